@@ -1,0 +1,57 @@
+//! Plain triangles, as a host hands them over.
+
+use glam::Vec3;
+
+/// Which sides of a triangle cast shadows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Casting {
+    /// Casts nothing.
+    None = 0,
+    /// Casts where its front (counter-clockwise side) faces the light: glTF single-sided.
+    #[default]
+    Front = 1,
+    /// Casts whichever side faces the light: glTF `doubleSided`.
+    Both = 2,
+    /// Casts where its back faces the light: volumes from the faces turned away
+    /// (Aldridge and Woods 2004, section 2, figure 2).
+    Back = 3,
+}
+
+impl Casting {
+    /// The coefficient of a triangle in the chain whose boundary the counters are:
+    /// +1 taken as wound, -1 taken with reversed winding, 0 left out.
+    ///
+    /// `facing` is the side of the triangle's plane that the light is on: +1 front, -1 back,
+    /// 0 in the plane.
+    #[inline]
+    pub fn coefficient(self, facing: i8) -> i8 {
+        match self {
+            Casting::None => 0,
+            Casting::Front => facing.max(0),
+            Casting::Both => facing,
+            Casting::Back => facing.min(0),
+        }
+    }
+}
+
+/// A triangle soup: any winding, any connectivity, duplicates and holes allowed.
+///
+/// Positions are world space, in metres, relative to an origin that the host keeps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertex positions; equal positions may appear many times.
+    pub positions: Vec<Vec3>,
+    /// Three indices into `positions` a triangle; counter-clockwise seen from its front.
+    pub triangles: Vec<[u32; 3]>,
+    /// One rule a triangle.
+    pub casting: Vec<Casting>,
+}
+
+impl Mesh {
+    /// The three corners of triangle `t`.
+    #[inline]
+    pub fn corners(&self, t: usize) -> [Vec3; 3] {
+        self.triangles[t].map(|v| self.positions[v as usize])
+    }
+}
