@@ -1,1 +1,39 @@
-fn main(){}
+//! The `umbrage` command line: `umbrage <verb> SCENE [options]`.
+//!
+//! Takes arguments, gives an exit code: 0 success, 1 a check failed, 2 bad input or usage,
+//! 3 no usable adapter. Each verb has its file in `verbs/`.
+#![forbid(unsafe_code)]
+
+mod args;
+mod error;
+mod json;
+mod light_file;
+mod progress;
+mod report;
+mod setting;
+mod table;
+mod values;
+mod verbs;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Cli, Verb};
+
+fn main() -> ExitCode {
+    // A usage error or --help ends here: clap prints it and exits with 2 or 0.
+    let done = match Cli::parse().verb {
+        Verb::Render(args) => verbs::render::run(&args),
+        Verb::Inspect(args) => verbs::inspect::run(&args),
+        Verb::Check(args) => verbs::check::run(&args),
+        Verb::Gen(args) => verbs::generate::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("umbrage: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -1,1 +1,14 @@
-//! placeholder
+//! A host like a user's: a small deferred renderer around Umbrage, for pictures, checks and
+//! benchmarks. It owns the device; the library only borrows it.
+#![forbid(unsafe_code)]
+
+pub mod auto_camera;
+pub mod gbuffer;
+pub mod gpu;
+pub mod heat;
+pub mod lab;
+pub mod light_pass;
+pub mod picture;
+pub mod readback;
+pub mod seeded_lights;
+pub mod stage;

@@ -1,1 +1,26 @@
-//! placeholder
+//! Records an Umbrage frame plan into a host's wgpu render pass.
+//!
+//! The host owns device, queue, encoder, depth buffer and the light shading. Three phases:
+//! *create* ([`ShadowRenderer::new`]), *prepare* ([`ShadowRenderer::upload_world`],
+//! [`ShadowRenderer::prepare`]) and *record* ([`ShadowRenderer::record`]).
+//!
+//! Requirements on the host's frame:
+//! - its depth pass computes clip positions with [`CLIP_WGSL`] from the world's own positions,
+//!   reversed-Z, infinite far plane, compare `Greater`, `unclipped_depth` where depth clamping is
+//!   available, both sides of every triangle drawn;
+//! - the pass given to `record` has that depth (read only) and a stencil that is zero.
+#![forbid(unsafe_code)]
+
+mod buffers;
+mod pipelines;
+mod renderer;
+
+pub use renderer::{
+    REQUIRED_STENCIL_ZERO, RenderError, RendererOptions, ShadowRenderer, ViewUniform, VolumeColor,
+};
+
+/// WGSL of `struct View` and `umbrage_clip`, for the host's own shaders. The layout of the
+/// uniform is [`ViewUniform`].
+pub const CLIP_WGSL: &str = include_str!("shaders/clip.wgsl");
+
+const VOLUME_WGSL: &str = include_str!("shaders/volume.wgsl");

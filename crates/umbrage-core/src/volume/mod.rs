@@ -1,1 +1,16 @@
-//! volume
+//! Subset to volume: facing, signed edge counters, silhouette quads, caps.
+//!
+//! Give every triangle of a light's subset a coefficient in {-1, 0, +1}; the counter of an edge is
+//! the signed sum over its triangles. That is the boundary of the chain of coefficients, so the
+//! volume closes by construction: whatever the subset, the soup, or the outcome of any one facing
+//! test (Aldridge and Woods 2004, section 2.4).
+
+mod build;
+mod chain;
+mod counter;
+mod validate;
+
+pub use build::{LightVolume, VolumeBuilder, Volumes};
+pub use chain::{ChainTriangle, chain, coefficient};
+pub use counter::{Quad, counter};
+pub use validate::{ClosureFault, check_closed};

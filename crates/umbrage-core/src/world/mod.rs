@@ -1,1 +1,247 @@
-//! world
+//! Triangles to a [`World`]: welded vertices, unique edges, triangles in BVH leaf order.
+//!
+//! Takes a [`Mesh`]; gives a `World` in which every subtree of the BVH is a contiguous range of
+//! triangles, edges are numbered by first use in that order, and **edges hold no pointers to
+//! faces** (Aldridge and Woods 2004, section 2.3): triangles point to edges.
+
+mod bvh;
+mod edges;
+mod planes;
+mod query;
+mod validate;
+mod weld;
+
+use std::time::Instant;
+
+use glam::Vec3;
+use thiserror::Error;
+
+pub use bvh::{Bvh, Node};
+pub use edges::{EdgeUse, Edges};
+pub use planes::{LightPoint, Planes, Side};
+pub use query::{Reach, query};
+pub use validate::WorldFault;
+
+use crate::mesh::{Casting, Mesh};
+
+/// Why a mesh cannot become a world.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum WorldError {
+    /// A list that must run parallel to the triangles does not.
+    #[error("{casting} casting rules for {triangles} triangles: hand over one rule a triangle")]
+    CastingLength {
+        /// Rules given.
+        casting: usize,
+        /// Triangles given.
+        triangles: usize,
+    },
+    /// An index points past the vertices.
+    #[error(
+        "triangle {triangle} uses vertex {vertex} of {vertices}: \
+         remove the triangle or hand over the missing vertices"
+    )]
+    IndexOutOfRange {
+        /// Offending triangle.
+        triangle: usize,
+        /// Its out-of-range index.
+        vertex: u32,
+        /// Vertices given.
+        vertices: usize,
+    },
+    /// A position is NaN or infinite.
+    #[error("vertex {vertex} is not finite: repair it before building a world")]
+    NotFinite {
+        /// Offending vertex.
+        vertex: usize,
+    },
+    /// More half edges than a u32 with a direction bit can number.
+    #[error("{triangles} triangles in one world; the limit is {limit}: split it in cells")]
+    TooManyTriangles {
+        /// Triangles given.
+        triangles: usize,
+        /// Largest count one world takes.
+        limit: usize,
+    },
+}
+
+/// What was found while building, and what it cost.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct WorldReport {
+    /// Triangles kept.
+    pub triangles: usize,
+    /// Vertices handed over.
+    pub vertices: usize,
+    /// Distinct positions among them (-0 equals +0).
+    pub welded_vertices: usize,
+    /// Distinct vertex pairs that are an edge of a kept triangle.
+    pub unique_edges: usize,
+    /// Edges with 1, 2, 3 and 4 or more triangles.
+    pub edges_by_triangles: [usize; 4],
+    /// Edges with exactly two triangles that run the same way along it.
+    pub opposite_wound_pairs: usize,
+    /// Triangles dropped because two of their corners weld to one vertex. (A triangle with three
+    /// distinct collinear corners has edges and is kept; no light ever faces it.)
+    pub degenerate_triangles: usize,
+    /// Kept triangles whose three vertices an earlier kept triangle also has, in any winding.
+    pub duplicate_triangles: usize,
+    /// Bytes of all world arrays, divided by kept triangles.
+    pub bytes_per_triangle: f64,
+    /// What the build cost.
+    pub build_ms: BuildTimes,
+}
+
+/// Milliseconds a build stage took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BuildTimes {
+    /// Equal positions found.
+    pub weld: f64,
+    /// Unique edges found.
+    pub edges: f64,
+    /// obvhs build.
+    pub bvh: f64,
+    /// Triangles and vertices renumbered, planes computed.
+    pub order: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+/// A world that lights can query. Immutable once built.
+#[derive(Clone, Debug, Default)]
+pub struct World {
+    /// Distinct positions, numbered by first use.
+    pub positions: Vec<Vec3>,
+    /// Three vertices a triangle, as wound in the mesh, in BVH leaf order.
+    pub triangles: Vec<[u32; 3]>,
+    /// The triangle's number in the mesh it was built from.
+    pub source: Vec<u32>,
+    /// One rule a triangle.
+    pub casting: Vec<Casting>,
+    /// Unique edges and each triangle's use of them.
+    pub edges: Edges,
+    /// Plane equations of the triangles.
+    pub planes: Planes,
+    /// Boxes over ranges of triangles.
+    pub bvh: Bvh,
+    /// What was found.
+    pub report: WorldReport,
+}
+
+impl World {
+    /// Largest number of triangles in one world: three half edges each must fit 31 bits.
+    pub const MAX_TRIANGLES: usize = (1 << 31) / 3;
+
+    /// Builds a world. Deterministic; in debug builds every invariant is checked.
+    pub fn build(mesh: &Mesh) -> Result<Self, WorldError> {
+        check_input(mesh)?;
+        let start = Instant::now();
+        let mut clock = Stopwatch(start);
+        let mut report = WorldReport {
+            vertices: mesh.positions.len(),
+            ..WorldReport::default()
+        };
+
+        let welded = weld::weld(&mesh.positions);
+        report.welded_vertices = welded.count;
+        report.build_ms.weld = clock.lap();
+
+        let kept: Vec<u32> = (0..mesh.triangles.len() as u32)
+            .filter(|&t| {
+                let [a, b, c] = mesh.triangles[t as usize].map(|v| welded.vertex[v as usize]);
+                a != b && b != c && c != a
+            })
+            .collect();
+        report.triangles = kept.len();
+        report.degenerate_triangles = mesh.triangles.len() - kept.len();
+
+        let (bvh, order) = bvh::build(mesh, &kept);
+        report.build_ms.bvh = clock.lap();
+
+        let source: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
+        let casting = source.iter().map(|&t| mesh.casting[t as usize]).collect();
+        let (positions, triangles) = weld::renumber(mesh, &welded, &source);
+        let planes = Planes::new(&positions, &triangles);
+        report.build_ms.order = clock.lap();
+
+        let edges = edges::unique_edges(&triangles, &mut report);
+        report.build_ms.edges = clock.lap();
+
+        let mut world = Self {
+            positions,
+            triangles,
+            source,
+            casting,
+            edges,
+            planes,
+            bvh,
+            report,
+        };
+        world.report.bytes_per_triangle =
+            world.bytes() as f64 / world.triangles.len().max(1) as f64;
+        world.report.build_ms.total = start.elapsed().as_secs_f64() * 1e3;
+        #[cfg(debug_assertions)]
+        if let Err(fault) = world.validate() {
+            panic!("World::build broke an invariant: {fault}");
+        }
+        Ok(world)
+    }
+
+    /// The three corners of triangle `t`.
+    #[inline]
+    pub fn corners(&self, t: u32) -> [Vec3; 3] {
+        self.triangles[t as usize].map(|v| self.positions[v as usize])
+    }
+
+    /// Bytes held by all arrays.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.source[..])
+            + size_of_val(&self.casting[..])
+            + self.edges.bytes()
+            + self.planes.bytes()
+            + self.bvh.bytes()
+    }
+}
+
+fn check_input(mesh: &Mesh) -> Result<(), WorldError> {
+    let triangles = mesh.triangles.len();
+    if mesh.casting.len() != triangles {
+        return Err(WorldError::CastingLength {
+            casting: mesh.casting.len(),
+            triangles,
+        });
+    }
+    if triangles > World::MAX_TRIANGLES {
+        return Err(WorldError::TooManyTriangles {
+            triangles,
+            limit: World::MAX_TRIANGLES,
+        });
+    }
+    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
+        return Err(WorldError::NotFinite { vertex });
+    }
+    let vertices = mesh.positions.len();
+    for (triangle, indices) in mesh.triangles.iter().enumerate() {
+        if let Some(&vertex) = indices.iter().find(|&&v| v as usize >= vertices) {
+            return Err(WorldError::IndexOutOfRange {
+                triangle,
+                vertex,
+                vertices,
+            });
+        }
+    }
+    Ok(())
+}
+
+struct Stopwatch(Instant);
+
+impl Stopwatch {
+    fn lap(&mut self) -> f64 {
+        let now = Instant::now();
+        let ms = (now - self.0).as_secs_f64() * 1e3;
+        self.0 = now;
+        ms
+    }
+}

@@ -1,0 +1,71 @@
+//! Why a verb ended early, and the exit code that says so.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use thiserror::Error;
+use umbrage_lab::gpu::GpuError;
+use umbrage_lab::picture::PictureError;
+
+/// The one error of the command line. Wrong options never get here: clap reports them.
+#[derive(Debug, Error)]
+pub(crate) enum CliError {
+    /// A scene, light file, option value or output path that cannot be used.
+    #[error("{0}")]
+    BadInput(String),
+    /// No adapter that satisfies `--adapter`.
+    #[error("{0}")]
+    NoAdapter(String),
+    /// The verb did its work, and what it checks does not hold.
+    #[error("check failed: {0}")]
+    CheckFailed(String),
+}
+
+impl CliError {
+    /// The exit code; scripts depend on it.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            CliError::CheckFailed(_) => 1,
+            CliError::BadInput(_) => 2,
+            CliError::NoAdapter(_) => 3,
+        }
+    }
+
+    /// A file that could not be read, written or understood.
+    pub(crate) fn file(path: &Path, why: impl Display) -> Self {
+        CliError::BadInput(format!("{}: {why}", path.display()))
+    }
+}
+
+impl From<umbrage_scene::SceneError> for CliError {
+    fn from(error: umbrage_scene::SceneError) -> Self {
+        CliError::BadInput(error.to_string())
+    }
+}
+
+impl From<GpuError> for CliError {
+    fn from(error: GpuError) -> Self {
+        match error {
+            GpuError::NoAdapter { .. } => CliError::NoAdapter(error.to_string()),
+            _ => CliError::BadInput(error.to_string()),
+        }
+    }
+}
+
+impl From<PictureError> for CliError {
+    fn from(error: PictureError) -> Self {
+        CliError::BadInput(error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exit_codes_are_fixed() {
+        assert_eq!(CliError::CheckFailed(String::new()).exit_code(), 1);
+        assert_eq!(CliError::BadInput(String::new()).exit_code(), 2);
+        assert_eq!(CliError::NoAdapter(String::new()).exit_code(), 3);
+    }
+}

@@ -1,0 +1,263 @@
+//! The JSON of every verb. Keys are fixed: scripts depend on them; more may be added.
+//!
+//! Times are milliseconds, medians over `--repeat` frames; a value that could not be measured
+//! (GPU time on an adapter without timestamps) is null.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// `render`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct RenderReport {
+    pub(crate) scene: String,
+    pub(crate) method: String,
+    pub(crate) adapter: String,
+    /// Width and height.
+    pub(crate) size: [u32; 2],
+    pub(crate) frame_ms: f64,
+    /// By name of the stage, CPU and GPU.
+    pub(crate) stages_ms: BTreeMap<String, f64>,
+    pub(crate) totals: RenderTotals,
+    pub(crate) lights: Vec<LightReport>,
+}
+
+/// Sums over the lights of one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct RenderTotals {
+    pub(crate) subset_triangles: u64,
+    pub(crate) facing_triangles: u64,
+    pub(crate) quads: u64,
+    pub(crate) cap_triangles: u64,
+    /// Quads and cap triangles drawn.
+    pub(crate) polygons: u64,
+    pub(crate) uploaded_bytes: u64,
+    pub(crate) lights_rebuilt: u64,
+    pub(crate) lights_cached: u64,
+    pub(crate) lights_skipped: u64,
+}
+
+/// How a light was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum PathTaken {
+    #[default]
+    Zpass,
+    Zfail,
+    Skipped,
+}
+
+/// One light of a frame.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct LightReport {
+    pub(crate) name: String,
+    /// point, spot or directional.
+    pub(crate) kind: String,
+    /// Metres; null for a light without one.
+    pub(crate) range: Option<f32>,
+    pub(crate) subset_triangles: u64,
+    pub(crate) facing_triangles: u64,
+    pub(crate) quads: u64,
+    pub(crate) cap_triangles: u64,
+    pub(crate) path: PathTaken,
+    /// Why this path; empty for the default one.
+    pub(crate) reason: String,
+    pub(crate) cached: bool,
+    pub(crate) build_us: f64,
+    pub(crate) gpu_us: Option<f64>,
+}
+
+impl RenderTotals {
+    /// Sums what the lights report; `uploaded_bytes` is the frame's own.
+    pub(crate) fn of(lights: &[LightReport], uploaded_bytes: u64) -> Self {
+        let mut totals = Self {
+            uploaded_bytes,
+            ..Self::default()
+        };
+        for light in lights {
+            totals.subset_triangles += light.subset_triangles;
+            totals.facing_triangles += light.facing_triangles;
+            totals.quads += light.quads;
+            totals.cap_triangles += light.cap_triangles;
+            let skipped = light.path == PathTaken::Skipped;
+            totals.lights_skipped += u64::from(skipped);
+            totals.lights_cached += u64::from(!skipped && light.cached);
+            totals.lights_rebuilt += u64::from(!skipped && !light.cached);
+        }
+        totals.polygons = totals.quads + totals.cap_triangles;
+        totals
+    }
+}
+
+/// `inspect`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct InspectReport {
+    pub(crate) scene: String,
+    /// As the scene has them, degenerate ones included.
+    pub(crate) triangles: u64,
+    pub(crate) vertices: u64,
+    pub(crate) welded_vertices: u64,
+    pub(crate) unique_edges: u64,
+    pub(crate) edges_by_triangles: EdgesByTriangles,
+    pub(crate) opposite_wound_pairs: u64,
+    pub(crate) degenerate_triangles: u64,
+    pub(crate) duplicate_triangles: u64,
+    pub(crate) bytes_per_triangle: f64,
+    /// That the scene brings itself.
+    pub(crate) lights: u64,
+    pub(crate) build_ms: BuildMs,
+}
+
+/// Edges by the number of triangles on them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct EdgesByTriangles {
+    #[serde(rename = "1")]
+    pub(crate) one: u64,
+    #[serde(rename = "2")]
+    pub(crate) two: u64,
+    #[serde(rename = "3")]
+    pub(crate) three: u64,
+    #[serde(rename = "4+")]
+    pub(crate) more: u64,
+}
+
+/// Stages of a world's build.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct BuildMs {
+    /// File read, decoded and flattened.
+    pub(crate) load: f64,
+    pub(crate) weld: f64,
+    pub(crate) edges: f64,
+    pub(crate) bvh: f64,
+    pub(crate) order: f64,
+    /// All of it, `load` included.
+    pub(crate) total: f64,
+}
+
+/// `check`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct CheckReport {
+    pub(crate) scene: String,
+    pub(crate) method: String,
+    pub(crate) adapter: String,
+    pub(crate) size: [u32; 2],
+    /// With a surface in them.
+    pub(crate) pixels: u64,
+    pub(crate) lights: u64,
+    /// Pixel-lights in the light's range and facing it.
+    pub(crate) samples: u64,
+    pub(crate) wrong: u64,
+    pub(crate) ambiguous: u64,
+    pub(crate) tolerance_px: f64,
+    pub(crate) tolerance_depth: f64,
+    /// Whether every light's volume is closed, counted in integers.
+    pub(crate) closed: bool,
+    pub(crate) worst: Vec<WorstPixel>,
+    pub(crate) lights_by_path: LightsByPath,
+}
+
+/// A wrong pixel-light.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct WorstPixel {
+    pub(crate) x: u32,
+    pub(crate) y: u32,
+    /// Name of the light.
+    pub(crate) light: String,
+}
+
+/// Lights by how they were drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct LightsByPath {
+    pub(crate) zpass: u64,
+    pub(crate) zfail: u64,
+    pub(crate) skipped: u64,
+}
+
+/// `gen`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct GenReport {
+    pub(crate) scene: String,
+    pub(crate) file: String,
+    pub(crate) bytes: u64,
+    pub(crate) triangles: u64,
+    pub(crate) lights: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(value: &impl Serialize) -> Vec<String> {
+        let value = serde_json::to_value(value).unwrap();
+        value.as_object().unwrap().keys().cloned().collect()
+    }
+
+    /// Every key that DESIGN.md fixes is there, under its very name.
+    #[test]
+    fn fixed_keys_are_there() {
+        let has = |given: Vec<String>, fixed: &str| {
+            for key in fixed.split(' ') {
+                assert!(given.iter().any(|k| k == key), "{key} missing in {given:?}");
+            }
+        };
+        has(
+            keys(&RenderReport::default()),
+            "scene method adapter size frame_ms stages_ms totals lights",
+        );
+        has(
+            keys(&RenderTotals::default()),
+            "subset_triangles facing_triangles quads cap_triangles polygons uploaded_bytes \
+             lights_rebuilt lights_cached lights_skipped",
+        );
+        has(
+            keys(&LightReport::default()),
+            "name kind range subset_triangles facing_triangles quads cap_triangles path reason \
+             cached build_us gpu_us",
+        );
+        has(
+            keys(&InspectReport::default()),
+            "triangles vertices welded_vertices unique_edges edges_by_triangles \
+             opposite_wound_pairs degenerate_triangles duplicate_triangles bytes_per_triangle \
+             lights build_ms",
+        );
+        has(keys(&EdgesByTriangles::default()), "1 2 3 4+");
+        has(keys(&BuildMs::default()), "load weld edges bvh order total");
+        has(
+            keys(&CheckReport::default()),
+            "scene method adapter size pixels lights samples wrong ambiguous tolerance_px \
+             tolerance_depth closed worst lights_by_path",
+        );
+        has(keys(&WorstPixel::default()), "x y light");
+        has(keys(&LightsByPath::default()), "zpass zfail skipped");
+    }
+
+    #[test]
+    fn totals_count_each_light_once() {
+        let light = |path, cached| LightReport {
+            path,
+            cached,
+            quads: 3,
+            cap_triangles: 2,
+            ..LightReport::default()
+        };
+        let lights = [
+            light(PathTaken::Zpass, true),
+            light(PathTaken::Zfail, false),
+            light(PathTaken::Skipped, true),
+        ];
+        let totals = RenderTotals::of(&lights, 40);
+        assert_eq!(
+            (
+                totals.lights_rebuilt,
+                totals.lights_cached,
+                totals.lights_skipped
+            ),
+            (1, 1, 1)
+        );
+        assert_eq!(
+            (totals.quads, totals.polygons, totals.uploaded_bytes),
+            (9, 15, 40)
+        );
+        assert_eq!(serde_json::to_value(PathTaken::Zpass).unwrap(), "zpass");
+    }
+}

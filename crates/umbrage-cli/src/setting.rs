@@ -1,0 +1,257 @@
+//! From options to what a frame needs: a staged scene, its lights and a view.
+//!
+//! Takes a scene's specification and the common options; every option that names something the
+//! scene lacks (a camera, say) is refused here, with a list of what it has.
+
+use std::borrow::Cow;
+
+use glam::{DVec3, Vec3};
+use umbrage_core::{Casting, Light, Mesh, View};
+use umbrage_lab::auto_camera::auto_camera;
+use umbrage_lab::seeded_lights::seeded_lights;
+use umbrage_lab::stage::{Stage, StageLight};
+use umbrage_scene::{Camera, Progress};
+
+use crate::args::{Common, ViewArgs, WorldArgs};
+use crate::error::CliError;
+use crate::light_file;
+use crate::progress::Bar;
+use crate::values::{CameraChoice, LightChoice, RangeChoice};
+
+/// Seeded lights for a scene that brings none.
+const DEFAULT_SEEDED: usize = 64;
+/// Vertical angle of view where none is given.
+const DEFAULT_FOVY_DEG: f64 = 60.0;
+
+/// A scene under one set of options.
+#[derive(Debug)]
+pub(crate) struct Setting {
+    pub(crate) stage: Stage,
+    pub(crate) lights: Vec<StageLight>,
+    pub(crate) view: View,
+}
+
+impl Setting {
+    /// Loads `scene` and settles casters, lights and view.
+    pub(crate) fn new(scene: &str, common: &Common) -> Result<Self, CliError> {
+        use_threads(common);
+        let bar = Bar::new(common.results.quiet);
+        let scene = umbrage_scene::open(scene, &bar)?;
+        bar.stage("build world", 0);
+        let origin = common.world.origin.map(|point| point.0);
+        let stage = Stage::new(scene, common.world.casters.into(), origin)
+            .map_err(|error| CliError::BadInput(error.to_string()))?;
+        let plain = as_materials_say(&stage);
+        bar.stage("place lights", 0);
+        let lights = lights(&stage, &plain, &common.world)?;
+        bar.stage("place camera", 0);
+        let view = view(&stage, &plain, &lights, &common.view)?;
+        Ok(Self {
+            stage,
+            lights,
+            view,
+        })
+    }
+}
+
+/// Makes `--threads` the size of the pool that everything here runs on.
+pub(crate) fn use_threads(common: &Common) {
+    if let Some(threads) = common.run.threads {
+        // Fails only if the pool is in use already, and this is the first thing a verb does.
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global();
+    }
+}
+
+/// The mesh with the casting rules of its materials: what is inside and outside does not depend
+/// on `--casters`, so neither do seeded lights nor the automatic camera.
+fn as_materials_say(stage: &Stage) -> Cow<'_, Mesh> {
+    let rule = |&m: &u32| match stage.scene.materials[m as usize].double_sided {
+        true => Casting::Both,
+        false => Casting::Front,
+    };
+    let casting: Vec<Casting> = stage.soup.material.iter().map(rule).collect();
+    if casting == stage.mesh.casting {
+        return Cow::Borrowed(&stage.mesh);
+    }
+    Cow::Owned(Mesh {
+        casting,
+        ..stage.mesh.clone()
+    })
+}
+
+fn lights(stage: &Stage, plain: &Mesh, args: &WorldArgs) -> Result<Vec<StageLight>, CliError> {
+    let range = match args.range {
+        RangeChoice::Auto => None,
+        RangeChoice::Metres(range) => Some(range),
+    };
+    let seeded = |count, seed| {
+        let placed = seeded_lights(plain, count, seed);
+        let placed = placed.into_iter().enumerate();
+        placed
+            .map(|(number, (position, range))| {
+                seeded_light(number, position.as_dvec3() + stage.soup.origin, range)
+            })
+            .collect()
+    };
+    let chosen: Cow<'_, [umbrage_scene::Light]> = match &args.lights {
+        LightChoice::Scene if !stage.scene.lights.is_empty() => Cow::Borrowed(&stage.scene.lights),
+        LightChoice::Scene => seeded(DEFAULT_SEEDED, 0),
+        LightChoice::Seeded { count, seed } => seeded(*count, *seed),
+        LightChoice::File(path) => Cow::Owned(light_file::read(path)?),
+    };
+    Ok(chosen
+        .iter()
+        .map(|light| stage.light(light, range))
+        .collect())
+}
+
+/// A seeded light: pale colours all around the wheel, one lux at half its range.
+fn seeded_light(number: usize, position: DVec3, range: f32) -> umbrage_scene::Light {
+    // Steps of the golden ratio: neighbours in number differ in hue, and no hue comes twice.
+    let hue = (number as f64 * 0.618_033_988_749_895).fract() as f32;
+    let part = |shift: f32| 0.7 + 0.3 * (std::f32::consts::TAU * (hue + shift)).cos();
+    umbrage_scene::Light {
+        name: format!("seeded_{number}"),
+        position,
+        color: Vec3::new(part(0.0), part(1.0 / 3.0), part(2.0 / 3.0)),
+        intensity: (0.5 * range).powi(2),
+        range: Some(range),
+        ..umbrage_scene::Light::default()
+    }
+}
+
+fn view(
+    stage: &Stage,
+    plain: &Mesh,
+    lights: &[StageLight],
+    args: &ViewArgs,
+) -> Result<View, CliError> {
+    let default_fovy = DEFAULT_FOVY_DEG.to_radians();
+    let cameras = &stage.scene.cameras;
+    let auto = || {
+        let aspect = args.size.0[0] as f32 / args.size.0[1] as f32;
+        let shadow_lights: Vec<Light> = lights.iter().map(|light| light.light).collect();
+        let found = auto_camera(plain, &shadow_lights, default_fovy as f32, aspect);
+        let [eye, target] = [found.eye, found.target].map(|p| p.as_dvec3() + stage.soup.origin);
+        Camera::look_at("auto", eye, target, default_fovy)
+    };
+    let camera: Camera = match &args.camera {
+        None => cameras.first().cloned().unwrap_or_else(auto),
+        Some(CameraChoice::Auto) => auto(),
+        Some(CameraChoice::Free {
+            eye,
+            target,
+            fovy_deg,
+        }) => {
+            let fovy_deg = fovy_deg.unwrap_or(DEFAULT_FOVY_DEG);
+            Camera::look_at("free", *eye, *target, fovy_deg.to_radians())
+        }
+        Some(CameraChoice::Index(number)) => cameras
+            .get(*number)
+            .cloned()
+            .ok_or_else(|| no_camera(&number.to_string(), cameras))?,
+        Some(CameraChoice::Name(name)) => {
+            let named = cameras.iter().find(|camera| camera.name == *name);
+            named.cloned().ok_or_else(|| no_camera(name, cameras))?
+        }
+    };
+    let near = args
+        .near
+        .or(camera.near.map(|near| near as f32))
+        .filter(|near| *near > 0.0);
+    let near = near.unwrap_or_else(|| (1e-4 * diagonal(&stage.mesh)).clamp(f32::MIN_POSITIVE, 0.1));
+    Ok(to_view(
+        &camera,
+        stage.local(camera.position),
+        near,
+        args.size.0,
+    ))
+}
+
+fn to_view(camera: &Camera, eye: Vec3, near: f32, size: [u32; 2]) -> View {
+    let right = camera.forward.cross(camera.up).normalize();
+    let scale_y = (1.0 / (camera.fovy_rad * 0.5).tan()) as f32;
+    View {
+        eye,
+        right: right.as_vec3(),
+        up: camera.up.as_vec3(),
+        forward: camera.forward.as_vec3(),
+        near,
+        scale_x: scale_y * size[1] as f32 / size[0] as f32,
+        scale_y,
+        size,
+    }
+}
+
+fn no_camera(wanted: &str, cameras: &[Camera]) -> CliError {
+    let names: Vec<String> = cameras
+        .iter()
+        .enumerate()
+        .map(|(n, camera)| format!("{n} ({})", camera.name))
+        .collect();
+    let has = if names.is_empty() {
+        "none".to_owned()
+    } else {
+        names.join(", ")
+    };
+    CliError::BadInput(format!(
+        "--camera {wanted}: the scene has no such camera; it has {has}, and auto always works"
+    ))
+}
+
+fn diagonal(mesh: &Mesh) -> f32 {
+    let low = mesh
+        .positions
+        .iter()
+        .fold(Vec3::INFINITY, |low, p| low.min(*p));
+    let high = mesh
+        .positions
+        .iter()
+        .fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
+    (high - low).max(Vec3::ZERO).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_becomes_the_view_that_looks_the_same_way() {
+        let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 1.0, 8.0));
+        let camera = Camera::look_at("c", eye, target, 1.0);
+        let ours = to_view(&camera, eye.as_vec3(), 0.1, [640, 360]);
+        let theirs = View::look_at(eye.as_vec3(), target.as_vec3(), 1.0, 0.1, [640, 360]);
+        for (a, b) in [
+            (ours.right, theirs.right),
+            (ours.up, theirs.up),
+            (ours.forward, theirs.forward),
+        ] {
+            assert!(a.distance(b) < 1e-6, "{a} {b}");
+        }
+        assert!((ours.scale_x - theirs.scale_x).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_missing_camera_is_bad_input_that_lists_the_others() {
+        let error = no_camera(
+            "7",
+            &[Camera {
+                name: "porch".to_owned(),
+                ..Camera::default()
+            }],
+        );
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("0 (porch)"), "{error}");
+    }
+
+    #[test]
+    fn seeded_lights_are_valid_in_the_scenes_terms() {
+        for number in 0..100 {
+            let light = seeded_light(number, DVec3::ZERO, 4.0);
+            assert!(light.color.min_element() >= 0.0 && light.color.max_element() <= 1.0);
+            assert_eq!(light.intensity, 4.0);
+        }
+    }
+}

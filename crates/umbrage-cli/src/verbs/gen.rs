@@ -1,0 +1,57 @@
+//! `umbrage gen`: a generated world as a .glb file.
+
+use umbrage_scene::{Progress, write};
+
+use crate::args::GenArgs;
+use crate::error::CliError;
+use crate::json;
+use crate::progress::Bar;
+use crate::report::GenReport;
+use crate::table::Table;
+
+/// Generates, writes beside the output and renames, so that the file is whole or not there.
+pub(crate) fn run(args: &GenArgs) -> Result<(), CliError> {
+    let extension = args
+        .output
+        .extension()
+        .map(|e| e.to_string_lossy().to_ascii_lowercase());
+    if extension.as_deref() != Some("glb") {
+        return Err(CliError::file(
+            &args.output,
+            "the output is binary glTF: name it .glb",
+        ));
+    }
+    let name = args.world.strip_prefix("gen:").unwrap_or(&args.world);
+    let bar = Bar::new(args.results.quiet);
+    let scene = umbrage_scene::open(&format!("gen:{name}"), &bar)?;
+
+    bar.stage("write", 0);
+    let beside = json::beside(&args.output)?.with_extension("tmp.glb");
+    let written = write::glb(&scene, &beside)
+        .map_err(CliError::from)
+        .and_then(|()| {
+            let renamed =
+                std::fs::rename(&beside, &args.output).and_then(|()| args.output.metadata());
+            renamed.map_err(|error| CliError::file(&args.output, error))
+        });
+    let bytes = written.inspect_err(|_| {
+        // Nothing to do if it was never made; the first error is the one to tell.
+        let _ = std::fs::remove_file(&beside);
+    })?;
+    drop(bar);
+
+    let report = GenReport {
+        scene: scene.name.clone(),
+        file: args.output.display().to_string(),
+        bytes: bytes.len(),
+        triangles: scene.flattened_triangles(),
+        lights: scene.lights.len() as u64,
+    };
+    let mut table = Table::default();
+    table.row(["file", &report.file]);
+    table.count("bytes", report.bytes);
+    table
+        .count("triangles", report.triangles)
+        .count("lights", report.lights);
+    args.results.show(&table, &report)
+}

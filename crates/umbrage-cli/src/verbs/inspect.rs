@@ -1,0 +1,103 @@
+//! `umbrage inspect`: what a scene's triangles are made of, and what building a world of them
+//! costs. No GPU.
+
+use std::time::Instant;
+
+use umbrage_core::world::World;
+use umbrage_core::{Casting, Mesh};
+use umbrage_scene::Progress;
+
+use crate::args::InspectArgs;
+use crate::error::CliError;
+use crate::progress::Bar;
+use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
+use crate::setting::use_threads;
+use crate::table::Table;
+
+/// Loads, builds, counts.
+pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
+    use_threads(&args.common);
+    let bar = Bar::new(args.common.results.quiet);
+    let start = Instant::now();
+    let scene = umbrage_scene::open(&args.scene, &bar)?;
+    let soup = scene.soup_at(args.common.world.origin.map(|point| point.0))?;
+    let load = start.elapsed().as_secs_f64() * 1e3;
+
+    bar.stage("build world", 0);
+    // Every triangle counts here, whatever it casts.
+    let casting = vec![Casting::Both; soup.triangles.len()];
+    let mesh = Mesh {
+        positions: soup.positions,
+        triangles: soup.triangles,
+        casting,
+    };
+    let world = World::build(&mesh)
+        .map_err(|error| CliError::BadInput(format!("{}: {error}", args.scene)))?;
+    drop(bar);
+
+    let found = &world.report;
+    let [one, two, three, more] = found.edges_by_triangles.map(|count| count as u64);
+    let times = &found.build_ms;
+    let report = InspectReport {
+        scene: scene.name.clone(),
+        triangles: mesh.triangles.len() as u64,
+        vertices: found.vertices as u64,
+        welded_vertices: found.welded_vertices as u64,
+        unique_edges: found.unique_edges as u64,
+        edges_by_triangles: EdgesByTriangles {
+            one,
+            two,
+            three,
+            more,
+        },
+        opposite_wound_pairs: found.opposite_wound_pairs as u64,
+        degenerate_triangles: found.degenerate_triangles as u64,
+        duplicate_triangles: found.duplicate_triangles as u64,
+        bytes_per_triangle: found.bytes_per_triangle,
+        lights: scene.lights.len() as u64,
+        build_ms: BuildMs {
+            load,
+            weld: times.weld,
+            edges: times.edges,
+            bvh: times.bvh,
+            order: times.order,
+            total: load + times.total,
+        },
+    };
+    args.common.results.show(&table(&report), &report)
+}
+
+fn table(report: &InspectReport) -> Table {
+    let mut table = Table::default();
+    let edges = &report.edges_by_triangles;
+    table
+        .row(["scene", &report.scene])
+        .count("triangles", report.triangles)
+        .count("  degenerate", report.degenerate_triangles)
+        .count("  duplicate", report.duplicate_triangles)
+        .count("vertices", report.vertices)
+        .count("  after weld", report.welded_vertices)
+        .count("unique edges", report.unique_edges)
+        .count("  of 1 triangle", edges.one)
+        .count("  of 2 triangles", edges.two)
+        .count("    wound alike along it", report.opposite_wound_pairs)
+        .count("  of 3 triangles", edges.three)
+        .count("  of 4 and more", edges.more)
+        .count("lights", report.lights)
+        .row([
+            "bytes per triangle",
+            &format!("{:.1}", report.bytes_per_triangle),
+        ]);
+    let times = &report.build_ms;
+    for (stage, ms) in [
+        ("build", times.total),
+        ("  load", times.load),
+        ("  weld", times.weld),
+        ("  edges", times.edges),
+        ("  bvh", times.bvh),
+        ("  order", times.order),
+    ] {
+        table.row([stage, &format!("{ms:.1} ms")]);
+    }
+    table
+}

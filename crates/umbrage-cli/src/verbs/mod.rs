@@ -1,0 +1,7 @@
+//! One file per verb: each takes its arguments, prints a table and writes its JSON.
+
+pub(crate) mod check;
+#[path = "gen.rs"] // `gen` is a reserved word
+pub(crate) mod generate;
+pub(crate) mod inspect;
+pub(crate) mod render;

@@ -1,0 +1,204 @@
+//! What to draw for each light in one view, as plain data.
+//!
+//! Takes a view, the lights and their volumes; gives a [`FramePlan`]. A light is drawn in two
+//! steps: its volume (quads, and caps where needed) counts in the stencil; its light draw passes
+//! where the stencil equals the light's reference, and zeroes what it covers for the next light.
+
+use std::ops::Range;
+
+use super::bounds::{Rect, light_rect};
+use super::eye_count::{EyeCount, eye_count};
+use super::view::View;
+use crate::light::Light;
+use crate::volume::{ChainTriangle, Volumes};
+use crate::world::World;
+
+/// How a plan is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PlanOptions {
+    /// Which stencil path lights take.
+    pub path: PathRule,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self { path: PathRule::ZPassWhereExact }
+    }
+}
+
+/// Which stencil path lights take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathRule {
+    /// Z-pass from the eye count; z-fail for lights whose eye count is ambiguous. Needs depth
+    /// clamping.
+    ZPassWhereExact,
+    /// Z-fail with both caps for every light.
+    ZFailAlways,
+}
+
+/// How one light is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightPath {
+    /// Sides crossed in front of the surface are counted, starting from the eye count.
+    ZPass {
+        /// Casters between light and eye.
+        eye_count: u32,
+    },
+    /// Sides and caps crossed behind the surface are counted.
+    ZFail(ZFailReason),
+    /// Not drawn.
+    Skipped(SkipReason),
+}
+
+/// Why a light takes the z-fail path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ZFailReason {
+    /// The eye is (almost) on a side of its volume.
+    EyeOnSide,
+    /// The plan's options ask for it.
+    Asked,
+}
+
+/// Why a light cannot matter in this view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkipReason {
+    /// Its range is outside the view.
+    OutsideView,
+    /// No triangle is within its range.
+    NothingInRange,
+}
+
+impl LightPath {
+    /// The word used in reports: `zpass`, `zfail` or `skipped`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            LightPath::ZPass { .. } => "zpass",
+            LightPath::ZFail(_) => "zfail",
+            LightPath::Skipped(_) => "skipped",
+        }
+    }
+
+    /// Why, in words; empty for the default path.
+    pub fn reason(&self) -> &'static str {
+        match self {
+            LightPath::ZPass { .. } => "",
+            LightPath::ZFail(ZFailReason::EyeOnSide) => "the eye is on a side of its volume",
+            LightPath::ZFail(ZFailReason::Asked) => "asked for",
+            LightPath::Skipped(SkipReason::OutsideView) => "its range is outside the view",
+            LightPath::Skipped(SkipReason::NothingInRange) => "no triangle is in its range",
+        }
+    }
+}
+
+/// One light of a plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightPlan {
+    /// How it is drawn.
+    pub path: LightPath,
+    /// Stencil value of a lit pixel after the volume is drawn.
+    pub stencil_reference: u8,
+    /// Pixels its range can touch.
+    pub scissor: Rect,
+    /// Its silhouette quads, in [`Volumes::quads`].
+    pub quads: Range<u32>,
+    /// Its cap triangles that are taken as wound, in [`FramePlan::caps`]; empty on the z-pass
+    /// path.
+    pub caps: Range<u32>,
+    /// Its cap triangles that are taken with reversed winding, in [`FramePlan::caps`].
+    pub reversed_caps: Range<u32>,
+}
+
+/// One view's plan for all lights.
+#[derive(Clone, Debug, Default)]
+pub struct FramePlan {
+    /// One entry a light, skipped ones included.
+    pub lights: Vec<LightPlan>,
+    /// The chains of the lights that need caps.
+    pub caps: Vec<ChainTriangle>,
+}
+
+impl FramePlan {
+    /// Plans `view`, replacing what was there. `volumes` must be those of `lights`.
+    pub fn make(
+        &mut self,
+        world: &World,
+        lights: &[Light],
+        volumes: &Volumes,
+        view: &View,
+        options: &PlanOptions,
+    ) {
+        self.lights.clear();
+        self.caps.clear();
+        for (number, (light, volume)) in lights.iter().zip(&volumes.lights).enumerate() {
+            let scissor = light_rect(view, light);
+            let path = if scissor.is_empty() {
+                LightPath::Skipped(SkipReason::OutsideView)
+            } else if volume.subset_triangles == 0 {
+                LightPath::Skipped(SkipReason::NothingInRange)
+            } else if options.path == PathRule::ZFailAlways {
+                LightPath::ZFail(ZFailReason::Asked)
+            } else {
+                match eye_count(world, light, volumes.quads_of(number), view.eye) {
+                    EyeCount::Exact(eye_count) => LightPath::ZPass { eye_count },
+                    EyeCount::Ambiguous => LightPath::ZFail(ZFailReason::EyeOnSide),
+                }
+            };
+            let chain: &[ChainTriangle] = match path {
+                LightPath::ZFail(_) => volumes.chain_of(number),
+                _ => &[],
+            };
+            let [caps, reversed_caps] = [1, -1].map(|coefficient| {
+                let first = self.caps.len() as u32;
+                self.caps.extend(chain.iter().filter(|t| t.coefficient() == coefficient));
+                first..self.caps.len() as u32
+            });
+            self.lights.push(LightPlan {
+                stencil_reference: match path {
+                    // Lit where eye count + sides crossed is 0; stencil arithmetic is modulo 256.
+                    LightPath::ZPass { eye_count } => (eye_count as u8).wrapping_neg(),
+                    _ => 0,
+                },
+                path,
+                scissor,
+                quads: volume.quads.clone(),
+                caps,
+                reversed_caps,
+            });
+        }
+    }
+
+    /// Plans lights without shadows: no volumes, every pixel lit.
+    pub fn unshadowed(&mut self, lights: &[Light], view: &View) {
+        self.lights.clear();
+        self.caps.clear();
+        self.lights.extend(lights.iter().map(|light| {
+            let scissor = light_rect(view, light);
+            LightPlan {
+                path: match scissor.is_empty() {
+                    true => LightPath::Skipped(SkipReason::OutsideView),
+                    false => LightPath::ZPass { eye_count: 0 },
+                },
+                stencil_reference: 0,
+                scissor,
+                quads: 0..0,
+                caps: 0..0,
+                reversed_caps: 0..0,
+            }
+        }));
+    }
+
+    /// Cap triangles drawn for a light: light and dark caps.
+    pub fn cap_triangles(&self, light: usize) -> usize {
+        let light = &self.lights[light];
+        2 * (light.caps.len() + light.reversed_caps.len())
+    }
+
+    /// The lights that are drawn, with their numbers.
+    pub fn drawn(&self) -> impl Iterator<Item = (usize, &LightPlan)> {
+        self.lights
+            .iter()
+            .enumerate()
+            .filter(|(_, light)| !matches!(light.path, LightPath::Skipped(_)))
+    }
+}

@@ -1,0 +1,157 @@
+//! Unique edges by radix sort of packed vertex pairs.
+//!
+//! Takes triangles over welded vertices; gives the edge table and each triangle's use of it.
+//! The 2004 paper left this step as future work (Aldridge and Woods, section 2.7).
+
+use bytemuck::{Pod, Zeroable};
+use rdst::{RadixKey, RadixSort};
+
+use super::WorldReport;
+
+/// One side of a triangle: which edge it is, and whether the triangle runs along it or against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
+#[repr(transparent)]
+pub struct EdgeUse(pub u32);
+
+impl EdgeUse {
+    /// `reversed`: the triangle runs from the edge's second vertex to its first.
+    #[inline]
+    pub fn new(edge: u32, reversed: bool) -> Self {
+        Self(edge << 1 | u32::from(reversed))
+    }
+
+    /// Index into [`Edges::vertices`].
+    #[inline]
+    pub fn edge(self) -> u32 {
+        self.0 >> 1
+    }
+
+    /// +1 if the triangle runs along the edge, -1 if against it.
+    #[inline]
+    pub fn sign(self) -> i32 {
+        1 - 2 * (self.0 & 1) as i32
+    }
+}
+
+/// The edge table.
+#[derive(Clone, Debug, Default)]
+pub struct Edges {
+    /// Two vertices an edge, lower number first; edges are numbered by first use.
+    pub vertices: Vec<[u32; 2]>,
+    /// Three uses a triangle: sides (0,1), (1,2), (2,0) of its vertices.
+    pub of_triangle: Vec<[EdgeUse; 3]>,
+}
+
+impl Edges {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.vertices[..]) + size_of_val(&self.of_triangle[..])
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct HalfEdge {
+    /// Lower vertex in the high half, so that the order is lexicographic.
+    pair: u64,
+    /// 3 * triangle + side.
+    side: u32,
+}
+
+impl RadixKey for HalfEdge {
+    const LEVELS: usize = 8;
+
+    #[inline]
+    fn get_level(&self, level: usize) -> u8 {
+        (self.pair >> (8 * level)) as u8
+    }
+}
+
+pub(super) fn unique_edges(triangles: &[[u32; 3]], report: &mut WorldReport) -> Edges {
+    let mut halves: Vec<HalfEdge> = triangles
+        .iter()
+        .enumerate()
+        .flat_map(|(t, &[a, b, c])| {
+            [(a, b), (b, c), (c, a)].into_iter().zip(0u32..).map(move |((from, to), k)| HalfEdge {
+                pair: u64::from(from.min(to)) << 32 | u64::from(from.max(to)),
+                side: 3 * t as u32 + k,
+            })
+        })
+        .collect();
+    halves.radix_sort_unstable();
+
+    // Each run of equal pairs is one edge. Let every side know the first side of its run, so that
+    // one pass in triangle order can number the edges by first use.
+    let mut first_side = vec![0u32; halves.len()];
+    for run in halves.chunk_by(|a, b| a.pair == b.pair) {
+        let first = run.iter().map(|h| h.side).min().unwrap_or_default();
+        let along = run.iter().filter(|h| runs_along(triangles, h.side)).count();
+        for half in run {
+            first_side[half.side as usize] = first;
+        }
+        report.unique_edges += 1;
+        report.edges_by_triangles[run.len().min(4) - 1] += 1;
+        report.opposite_wound_pairs += usize::from(run.len() == 2 && along != 1);
+    }
+    drop(halves);
+
+    let mut vertices = Vec::with_capacity(report.unique_edges);
+    let mut edge_of_side = vec![0u32; first_side.len()];
+    for (side, &first) in first_side.iter().enumerate() {
+        edge_of_side[side] = if first as usize == side {
+            let (from, to) = ends(triangles, side as u32);
+            vertices.push([from.min(to), from.max(to)]);
+            vertices.len() as u32 - 1
+        } else {
+            edge_of_side[first as usize]
+        };
+    }
+    let of_triangle = (0..triangles.len() as u32)
+        .map(|t| {
+            [0, 1, 2].map(|k| {
+                let side = 3 * t + k;
+                EdgeUse::new(edge_of_side[side as usize], !runs_along(triangles, side))
+            })
+        })
+        .collect();
+    report.duplicate_triangles = count_duplicates(triangles);
+    Edges {
+        vertices,
+        of_triangle,
+    }
+}
+
+fn ends(triangles: &[[u32; 3]], side: u32) -> (u32, u32) {
+    let corners = triangles[side as usize / 3];
+    let k = side as usize % 3;
+    (corners[k], corners[(k + 1) % 3])
+}
+
+fn runs_along(triangles: &[[u32; 3]], side: u32) -> bool {
+    let (from, to) = ends(triangles, side);
+    from < to
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Corners([u32; 3]);
+
+impl RadixKey for Corners {
+    const LEVELS: usize = 12;
+
+    #[inline]
+    fn get_level(&self, level: usize) -> u8 {
+        (self.0[level / 4] >> (8 * (level % 4))) as u8
+    }
+}
+
+fn count_duplicates(triangles: &[[u32; 3]]) -> usize {
+    let mut corners: Vec<Corners> = triangles
+        .iter()
+        .map(|&t| {
+            let mut t = t;
+            t.sort_unstable();
+            Corners(t)
+        })
+        .collect();
+    corners.radix_sort_unstable();
+    corners.windows(2).filter(|w| w[0].0 == w[1].0).count()
+}

@@ -1,0 +1,310 @@
+//! The lab's depth pass: depth, and the surface that lights are shaded on.
+
+use std::borrow::Cow;
+
+use umbrage::{CLIP_WGSL, ShadowRenderer};
+use wgpu::util::DeviceExt as _;
+use wgpu::{Texture, TextureFormat, TextureUsages, TextureView};
+
+use crate::gpu::{Gpu, GpuError};
+use crate::stage::Stage;
+
+/// Depth with the stencil that volumes count in.
+pub const DEPTH_STENCIL: TextureFormat = TextureFormat::Depth32FloatStencil8;
+
+const ALBEDO: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+const NORMAL: TextureFormat = TextureFormat::Rgba16Float;
+const DISTANCE: TextureFormat = TextureFormat::R32Float;
+
+/// Render targets of one size.
+#[derive(Debug)]
+pub struct Targets {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Depth and stencil.
+    pub depth: Texture,
+    /// Base colour; alpha is roughness.
+    pub albedo: Texture,
+    /// World-space unit normal.
+    pub normal: Texture,
+    /// Distance along the viewing direction; 0 where there is no surface.
+    pub distance: Texture,
+}
+
+impl Targets {
+    /// Creates them, or says which limit is in the way.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        let [width, height] = size;
+        if width == 0 || height == 0 || width > limit || height > limit {
+            return Err(GpuError::SizeTooLarge { width, height, limit });
+        }
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        Ok(Self {
+            size,
+            depth: texture(gpu, "depth", size, DEPTH_STENCIL, TextureUsages::empty()),
+            albedo: texture(gpu, "albedo", size, ALBEDO, read),
+            normal: texture(gpu, "normal", size, NORMAL, read),
+            distance: texture(gpu, "distance", size, DISTANCE, read),
+        })
+    }
+}
+
+/// A 2D render target.
+pub fn texture(
+    gpu: &Gpu,
+    label: &str,
+    [width, height]: [u32; 2],
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: usage | TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    })
+}
+
+/// The default view of a texture.
+pub fn whole(texture: &Texture) -> TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Draws the stage's triangles, both sides, whatever casts.
+#[derive(Debug)]
+pub struct GBufferPass {
+    pipeline: wgpu::RenderPipeline,
+    bind_group: wgpu::BindGroup,
+    corners: wgpu::Buffer,
+    /// A base colour texture and the corners that use it.
+    batches: Vec<(wgpu::BindGroup, std::ops::Range<u32>)>,
+}
+
+impl GBufferPass {
+    /// Uploads what shading needs; positions are the shadow renderer's.
+    pub fn new(gpu: &Gpu, stage: &Stage, shadows: &ShadowRenderer) -> Result<Self, GpuError> {
+        let (positions, triangles) =
+            shadows.world_buffers().ok_or(umbrage::RenderError::NoWorld)?;
+        let world = &stage.world;
+        let soup = &stage.soup;
+        let device = &gpu.device;
+        let storage = |label: &str, bytes: &[u8]| {
+            let limit = device.limits().max_storage_buffer_binding_size;
+            if bytes.len() as u64 > limit {
+                return Err(umbrage::RenderError::BufferTooLarge {
+                    what: "shading attributes",
+                    needed: bytes.len() as u64,
+                    limit,
+                });
+            }
+            Ok(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents: if bytes.is_empty() { &[0; 32] } else { bytes },
+                usage: wgpu::BufferUsages::STORAGE,
+            }))
+        };
+        let of_source = |t: &u32| *t as usize;
+        let material: Vec<u32> = world.source.iter().map(|t| soup.material[of_source(t)]).collect();
+        let mut normals = vec![0u32];
+        if !soup.normals.is_empty() {
+            normals = world.source.iter().flat_map(|t| soup.normals[of_source(t)]).map(pack).collect();
+        }
+        let mut uvs = vec![glam::Vec2::ZERO];
+        if !soup.uvs.is_empty() {
+            uvs = world.source.iter().flat_map(|t| soup.uvs[of_source(t)]).collect();
+        }
+        let materials: Vec<[[f32; 4]; 2]> = stage
+            .scene
+            .materials
+            .iter()
+            .map(|m| [m.base_color.to_array(), [m.roughness, m.metallic, 0.0, 0.0]])
+            .collect();
+        let attributes = [
+            storage("triangle materials", bytemuck::cast_slice(&material))?,
+            storage("normals", bytemuck::cast_slice(&normals))?,
+            storage("texture coordinates", bytemuck::cast_slice(&uvs))?,
+            storage("materials", bytemuck::cast_slice(&materials))?,
+        ];
+
+        let image_of = |t: usize| stage.scene.materials[material[t] as usize].base_color_image;
+        let mut order: Vec<u32> = (0..world.triangles.len() as u32).collect();
+        order.sort_by_key(|&t| image_of(t as usize));
+        let corner_ids: Vec<u32> = order.iter().flat_map(|&t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+
+        let pipeline = pipeline(gpu);
+        let buffers = [shadows.view_buffer(), positions, triangles]
+            .into_iter()
+            .chain(&attributes);
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("gbuffer"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut batches = Vec::new();
+        let mut end = 0;
+        for batch in order.chunk_by(|&a, &b| image_of(a as usize) == image_of(b as usize)) {
+            let start = end;
+            end += 3 * batch.len() as u32;
+            let image = image_of(batch[0] as usize).map(|i| &stage.scene.images[i as usize]);
+            batches.push((image_bind_group(gpu, &pipeline, image), start..end));
+        }
+        Ok(Self {
+            bind_group,
+            corners: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("corners"),
+                contents: bytemuck::cast_slice(if corner_ids.is_empty() { &[0] } else { &corner_ids }),
+                usage: wgpu::BufferUsages::INDEX,
+            }),
+            batches,
+            pipeline,
+        })
+    }
+
+    /// Clears and fills the targets.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        let views = [&targets.albedo, &targets.normal, &targets.distance].map(whole);
+        let attachments = views.each_ref().map(|view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("gbuffer"),
+            color_attachments: &attachments,
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &whole(&targets.depth),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Store,
+                }),
+            }),
+            timestamp_writes: timestamps,
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_index_buffer(self.corners.slice(..), wgpu::IndexFormat::Uint32);
+        for (image, corners) in &self.batches {
+            pass.set_bind_group(1, image, &[]);
+            pass.draw_indexed(corners.clone(), 0, 0..1);
+        }
+    }
+}
+
+fn pack(n: glam::Vec3) -> u32 {
+    let byte = |x: f32| (x.clamp(-1.0, 1.0) * 127.0).round() as i8 as u8;
+    u32::from_le_bytes([byte(n.x), byte(n.y), byte(n.z), 0])
+}
+
+fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
+    let device = &gpu.device;
+    let source = format!("{CLIP_WGSL}\n{}", include_str!("shaders/gbuffer.wgsl"));
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("gbuffer"),
+        source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
+    });
+    let targets = [ALBEDO, NORMAL, DISTANCE].map(|format| Some(format.into()));
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("gbuffer"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState {
+            unclipped_depth: gpu.depth_clamp,
+            ..wgpu::PrimitiveState::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_STENCIL,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn image_bind_group(
+    gpu: &Gpu,
+    pipeline: &wgpu::RenderPipeline,
+    image: Option<&umbrage_scene::Image>,
+) -> wgpu::BindGroup {
+    let white = ([1, 1], vec![255u8; 4]);
+    let ([width, height], rgba8) = image.map_or((white.0, &white.1), |i| (i.size, &i.rgba8));
+    let texture = gpu.device.create_texture_with_data(
+        &gpu.queue,
+        &wgpu::TextureDescriptor {
+            label: Some("base colour"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TextureFormat::Rgba8UnormSrgb,
+            usage: TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        rgba8,
+    );
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("base colour"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..wgpu::SamplerDescriptor::default()
+    });
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("base colour"),
+        layout: &pipeline.get_bind_group_layout(1),
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&whole(&texture)),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::Sampler(&sampler),
+            },
+        ],
+    })
+}

@@ -1,0 +1,139 @@
+//! Adapter and device: the one place where the lab touches the machine.
+
+use thiserror::Error;
+use umbrage::RenderError;
+
+/// Which adapter to use.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// The fastest: discrete, integrated, virtual, then software.
+    #[default]
+    Auto,
+    /// The first whose name contains this, ignoring case.
+    Name(String),
+    /// A software rasteriser.
+    Cpu,
+}
+
+/// What can go wrong between the lab and the GPU.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// No adapter fits the choice.
+    #[error(
+        "no usable GPU adapter{}: {}",
+        if found.is_empty() { "" } else { " among those found" },
+        remedy(choice, found)
+    )]
+    NoAdapter {
+        /// What was asked for.
+        choice: AdapterChoice,
+        /// Names of the adapters there are.
+        found: Vec<String>,
+    },
+    /// The adapter refused to give a device.
+    #[error("adapter {adapter} gave no device: {message}")]
+    NoDevice {
+        /// Its name.
+        adapter: String,
+        /// Its words.
+        message: String,
+    },
+    /// A texture would pass a device limit.
+    #[error("a {width}x{height} picture is beyond this device's limit of {limit} pixels a side")]
+    SizeTooLarge {
+        /// Asked width.
+        width: u32,
+        /// Asked height.
+        height: u32,
+        /// Device limit.
+        limit: u32,
+    },
+    /// Reading results back failed.
+    #[error("the device was lost while a frame was read back: {0}")]
+    Readback(String),
+    /// The library refused.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+fn remedy(choice: &AdapterChoice, found: &[String]) -> String {
+    match choice {
+        AdapterChoice::Name(name) => {
+            format!("none is called {name:?}; there are: {}", found.join(", "))
+        }
+        _ if cfg!(target_os = "linux") => "install a Vulkan driver, in software if there is no \
+            GPU: apt-get install libvulkan1 mesa-vulkan-drivers (Debian, Ubuntu), dnf install \
+            mesa-vulkan-drivers (Fedora), pacman -S vulkan-swrast (Arch)"
+            .into(),
+        _ => "update the graphics driver".into(),
+    }
+}
+
+/// A device with what it can do.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Name and driver of the adapter.
+    pub adapter: String,
+    /// Whether z-pass is safe (`DEPTH_CLIP_CONTROL`).
+    pub depth_clamp: bool,
+    /// Nanoseconds per timestamp tick, where there are timestamps.
+    pub timestamp_ns: Option<f32>,
+}
+
+impl Gpu {
+    /// Finds an adapter and opens a device with the limits the adapter has. Errors that the
+    /// validation layer reports later are fatal: the lab must never cause one.
+    pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::PRIMARY,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+        let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+        let rank = |a: &wgpu::Adapter| match a.get_info().device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Cpu => 3,
+            wgpu::DeviceType::Other => 4,
+        };
+        adapters.sort_by_key(rank);
+        let adapter = adapters
+            .into_iter()
+            .find(|a| match choice {
+                AdapterChoice::Auto => true,
+                AdapterChoice::Cpu => a.get_info().device_type == wgpu::DeviceType::Cpu,
+                AdapterChoice::Name(name) => {
+                    a.get_info().name.to_lowercase().contains(&name.to_lowercase())
+                }
+            })
+            .ok_or_else(|| GpuError::NoAdapter { choice: choice.clone(), found: names })?;
+        let info = adapter.get_info();
+        let wanted = wgpu::Features::DEPTH_CLIP_CONTROL
+            | wgpu::Features::DEPTH32FLOAT_STENCIL8
+            | wgpu::Features::TIMESTAMP_QUERY;
+        let features = adapter.features() & wanted;
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("umbrage lab"),
+            required_features: features,
+            required_limits: adapter.limits(),
+            ..wgpu::DeviceDescriptor::default()
+        }))
+        .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), message: e.to_string() })?;
+        let timestamp_ns = features
+            .contains(wgpu::Features::TIMESTAMP_QUERY)
+            .then(|| queue.get_timestamp_period());
+        Ok(Self {
+            depth_clamp: features.contains(wgpu::Features::DEPTH_CLIP_CONTROL),
+            timestamp_ns,
+            adapter: format!("{} ({})", info.name, info.driver_info).replace(" ()", ""),
+            device,
+            queue,
+        })
+    }
+}

@@ -1,0 +1,133 @@
+//! Heat maps: what is drawn or counted at each pixel, in false colours.
+
+use half::f16;
+use umbrage::frame::{FramePlan, LightPath};
+use umbrage::{Light, RendererOptions, ShadowRenderer, View, VolumeColor};
+
+use crate::gbuffer::{DEPTH_STENCIL, GBufferPass, Targets, texture};
+use crate::gpu::GpuError;
+use crate::lab::{Lab, Method, light_pass};
+use crate::light_pass::{HDR, LightDraw, LightPass};
+use crate::readback::read_texture;
+use crate::stage::{Stage, StageLight};
+
+/// What a heat map counts at each pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heat {
+    /// Volume fragments in front of the surface (z-pass) of all lights.
+    Overdraw,
+    /// Lights whose range reaches the surface.
+    Lights,
+    /// Volumes that enclose the surface: casters between it and each light, summed.
+    Layers,
+    /// Volume fragments and light fragments.
+    Cost,
+}
+
+impl Lab {
+    /// Draws the last frame's volumes and lights as counts, one f32 a pixel.
+    pub fn heat(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        heat: Heat,
+    ) -> Result<Vec<f32>, GpuError> {
+        self.prepare(stage, lights, view, method);
+        let mut total = vec![0.0; (view.size[0] * view.size[1]) as usize];
+        let draws: &[(VolumeColor, LightDraw)] = match heat {
+            Heat::Overdraw => &[(VolumeColor::Fragments, LightDraw::Nothing)],
+            Heat::Lights => &[(VolumeColor::None, LightDraw::Reach)],
+            Heat::Layers => &[(VolumeColor::Layers, LightDraw::Nothing)],
+            Heat::Cost => &[(VolumeColor::Fragments, LightDraw::One)],
+        };
+        for &(volume, draw) in draws {
+            let counts = self.counts(stage, lights, view, volume, draw)?;
+            total.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+        }
+        if heat == Heat::Layers {
+            add_eye_counts(&self.plan, &mut total, view.size[0] as usize);
+        }
+        Ok(total)
+    }
+
+    fn counts(
+        &self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        volume_color: VolumeColor,
+        draw: LightDraw,
+    ) -> Result<Vec<f32>, GpuError> {
+        let gpu = self.gpu();
+        let targets = Targets::new(gpu, view.size)?;
+        let mut shadows = ShadowRenderer::new(
+            &gpu.device,
+            &RendererOptions {
+                color_formats: &[Some(HDR)],
+                depth_stencil_format: DEPTH_STENCIL,
+                sample_count: 1,
+                depth_clamp: gpu.depth_clamp,
+                volume_color,
+            },
+        )?;
+        shadows.upload_world(&gpu.device, &stage.world)?;
+        let surface = GBufferPass::new(gpu, stage, &shadows)?;
+        let light = LightPass::new(gpu, &shadows, draw);
+        let binding = light.bind(gpu, &shadows, lights, &targets);
+        let plain: Vec<Light> = lights.iter().map(|l| l.light).collect();
+        shadows.prepare(&gpu.device, &gpu.queue, view, &plain, &self.volumes, &self.plan)?;
+        let sums = texture(gpu, "counts", view.size, HDR, wgpu::TextureUsages::COPY_SRC);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("counts"),
+        });
+        surface.record(&mut encoder, &targets, None);
+        {
+            let mut pass = light_pass(&mut encoder, &targets, &sums, None);
+            shadows.record(&mut pass, &self.plan, 0..usize::MAX, |pass, number, _| {
+                light.draw(pass, &binding, number);
+            });
+        }
+        gpu.queue.submit([encoder.finish()]);
+        let first = |t: &[u8]| f16::from_le_bytes([t[0], t[1]]).to_f32();
+        Ok(read_texture(gpu, &sums)?.chunks_exact(8).map(first).collect())
+    }
+}
+
+/// Sides crossed plus the eye count are the layers at the surface.
+fn add_eye_counts(plan: &FramePlan, total: &mut [f32], width: usize) {
+    for (_, light) in plan.drawn() {
+        let LightPath::ZPass { eye_count } = light.path else { continue };
+        let s = light.scissor;
+        for y in s.y..s.y + s.height {
+            let row = y as usize * width + s.x as usize;
+            total[row..row + s.width as usize].iter_mut().for_each(|t| *t += eye_count as f32);
+        }
+    }
+}
+
+/// Black, blue, green, yellow, red, white; the scale ends at the 99.9th percentile.
+pub fn false_colours(counts: &[f32]) -> Vec<u8> {
+    const STOPS: [[f32; 3]; 6] = [
+        [0.0, 0.0, 0.02],
+        [0.1, 0.15, 0.7],
+        [0.05, 0.65, 0.45],
+        [0.95, 0.85, 0.2],
+        [0.9, 0.2, 0.1],
+        [1.0, 1.0, 1.0],
+    ];
+    let mut sorted = counts.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let top = sorted.get(sorted.len().saturating_sub(1 + sorted.len() / 1000));
+    let top = top.copied().unwrap_or(1.0).max(1.0);
+    counts
+        .iter()
+        .flat_map(|&count| {
+            let at = (count / top).clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;
+            let low = (at as usize).min(STOPS.len() - 2);
+            let [a, b] = [STOPS[low], STOPS[low + 1]].map(glam::Vec3::from);
+            (a.lerp(b, at - low as f32) * 255.0).to_array().map(|c| c as u8)
+        })
+        .collect()
+}

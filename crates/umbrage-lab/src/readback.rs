@@ -1,0 +1,60 @@
+//! Textures back to the CPU.
+
+use crate::gpu::{Gpu, GpuError};
+
+/// Reads level 0 of a 2D texture; rows are tightly packed in the result.
+pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
+    let size = texture.size();
+    let texel = texture.format().block_copy_size(None).unwrap_or(4);
+    let row = size.width * texel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded) * u64::from(size.height),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+        label: Some("readback"),
+    });
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: None,
+            },
+        },
+        size,
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_buffer(gpu, &buffer)?;
+    Ok(bytes
+        .chunks(padded as usize)
+        .flat_map(|line| &line[..row as usize])
+        .copied()
+        .collect())
+}
+
+/// Reads a mappable buffer.
+pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let lost = |e: String| GpuError::Readback(e);
+    let slice = buffer.slice(..);
+    let (send, receive) = std::sync::mpsc::channel();
+    slice.map_async(wgpu::MapMode::Read, move |result| {
+        // The receiver lives until poll has returned.
+        let _ = send.send(result);
+    });
+    gpu.device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .map_err(|e| lost(e.to_string()))?;
+    receive
+        .recv()
+        .map_err(|e| lost(e.to_string()))?
+        .map_err(|e| lost(e.to_string()))?;
+    let bytes = slice.get_mapped_range().map_err(|e| lost(e.to_string()))?.to_vec();
+    buffer.unmap();
+    Ok(bytes)
+}

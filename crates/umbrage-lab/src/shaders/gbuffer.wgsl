@@ -1,0 +1,74 @@
+// Depth and surface of the nearest triangle. Vertices are pulled from the world's own buffers, and
+// clip positions come from umbrage_clip, so that depth agrees with the volumes to the last bit.
+
+struct Surface {
+    base_color: vec4f,
+    // roughness, metallic, unused, unused
+    params: vec4f,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var<storage, read> positions: array<f32>;
+@group(0) @binding(2) var<storage, read> triangles: array<u32>;
+@group(0) @binding(3) var<storage, read> triangle_material: array<u32>;
+// One packed normal a corner, or a single entry where the scene has none.
+@group(0) @binding(4) var<storage, read> normals: array<u32>;
+// One pair a corner, or a single entry where the scene has none.
+@group(0) @binding(5) var<storage, read> uvs: array<vec2f>;
+@group(0) @binding(6) var<storage, read> materials: array<Surface>;
+@group(1) @binding(0) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(1) var base_color_sampler: sampler;
+
+struct Varying {
+    @builtin(position) @invariant clip: vec4f,
+    @location(0) distance: f32,
+    @location(1) normal: vec3f,
+    @location(2) uv: vec2f,
+    @location(3) @interpolate(flat) material: u32,
+}
+
+fn position(vertex: u32) -> vec3f {
+    let i = 3u * vertex;
+    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) corner: u32) -> Varying {
+    let triangle = corner / 3u;
+    let first = 3u * triangle;
+    let p = position(triangles[corner]);
+    var out: Varying;
+    out.clip = umbrage_clip(view, p - view.eye, 1.0);
+    out.distance = out.clip.w;
+    out.material = triangle_material[triangle];
+    if arrayLength(&normals) > 1u {
+        out.normal = unpack4x8snorm(normals[corner]).xyz;
+    } else {
+        let a = position(triangles[first]);
+        let b = position(triangles[first + 1u]);
+        let c = position(triangles[first + 2u]);
+        out.normal = cross(b - a, c - a);
+    }
+    if arrayLength(&uvs) > 1u {
+        out.uv = uvs[corner];
+    }
+    return out;
+}
+
+struct Targets {
+    @location(0) albedo: vec4f,
+    @location(1) normal: vec4f,
+    @location(2) distance: f32,
+}
+
+@fragment
+fn fragment(in: Varying) -> Targets {
+    let material = materials[in.material];
+    let texel = textureSample(base_color_texture, base_color_sampler, in.uv);
+    var out: Targets;
+    out.albedo = vec4f(material.base_color.rgb * texel.rgb, material.params.x);
+    let length2 = dot(in.normal, in.normal);
+    out.normal = vec4f(select(vec3f(0.0), in.normal * inverseSqrt(length2), length2 > 0.0), 1.0);
+    out.distance = in.distance;
+    return out;
+}

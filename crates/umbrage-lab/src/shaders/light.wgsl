@@ -1,0 +1,110 @@
+// One light over its scissor; the stencil test has already decided which pixels are lit.
+
+struct Light {
+    position: vec3f,
+    range: f32,
+    power: vec3f,
+    // 0 point, 1 spot, 2 directional
+    kind: u32,
+    direction: vec3f,
+    cos_outer: f32,
+    cos_inner: f32,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var<storage, read> lights: array<Light>;
+@group(0) @binding(2) var albedo_texture: texture_2d<f32>;
+@group(0) @binding(3) var normal_texture: texture_2d<f32>;
+@group(0) @binding(4) var distance_texture: texture_2d<f32>;
+
+struct Varying {
+    @builtin(position) position: vec4f,
+    @location(0) @interpolate(flat) light: u32,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
+    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
+    return Varying(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), light);
+}
+
+// From the eye to the surface at a pixel.
+fn surface_offset(pixel: vec2f, distance: f32) -> vec3f {
+    let size = vec2f(textureDimensions(distance_texture));
+    let ndc = vec2f(2.0, -2.0) * pixel / size + vec2f(-1.0, 1.0);
+    return distance * (view.forward + view.right * (ndc.x / view.scale_x)
+        + view.up * (ndc.y / view.scale_y));
+}
+
+// KHR_lights_punctual: inverse square with a window that reaches zero at the range.
+fn attenuation(d2: f32, range: f32) -> f32 {
+    let ratio2 = d2 / (range * range);
+    return clamp(1.0 - ratio2 * ratio2, 0.0, 1.0) / max(d2, 1e-4);
+}
+
+@fragment
+fn shade(in: Varying) -> @location(0) vec4f {
+    let light = lights[in.light];
+    let texel = vec2i(in.position.xy);
+    let distance = textureLoad(distance_texture, texel, 0).x;
+    if distance <= 0.0 {
+        return vec4f(0.0);
+    }
+    let q = surface_offset(in.position.xy, distance);
+    var to_light = -light.direction;
+    var strength = 1.0;
+    if light.kind != 2u {
+        let v = (light.position - view.eye) - q;
+        let d2 = dot(v, v);
+        to_light = v * inverseSqrt(max(d2, 1e-12));
+        strength = attenuation(d2, light.range);
+        if light.kind == 1u {
+            let c = dot(light.direction, -to_light);
+            let edge = clamp((c - light.cos_outer)
+                / max(light.cos_inner - light.cos_outer, 1e-4), 0.0, 1.0);
+            strength *= edge * edge;
+        }
+    }
+    if strength <= 0.0 {
+        return vec4f(0.0);
+    }
+    let surface = textureLoad(albedo_texture, texel, 0);
+    let to_eye = -normalize(q);
+    var n = textureLoad(normal_texture, texel, 0).xyz;
+    if dot(n, to_eye) < 0.0 {
+        n = -n;
+    }
+    let cosine = max(dot(n, to_light), 0.0);
+    let roughness = max(surface.a, 0.05);
+    let shininess = 2.0 / (roughness * roughness * roughness * roughness) - 2.0;
+    let half_way = normalize(to_light + to_eye);
+    let highlight = 0.04 * (shininess + 8.0) / 25.1327
+        * pow(max(dot(n, half_way), 0.0), max(shininess, 1.0));
+    let reflected = (surface.rgb / 3.14159265 + highlight) * cosine;
+    return vec4f(min(light.power * strength * reflected, vec3f(6e4)), 1.0);
+}
+
+// One bit a light, 32 lights a texture: channel by byte, additive.
+@fragment
+fn mark(in: Varying) -> @location(0) vec4f {
+    let bit = in.light & 7u;
+    let byte = (in.light >> 3u) & 3u;
+    let value = f32(1u << bit) / 255.0;
+    return select(vec4f(0.0), vec4f(value), vec4u(0u, 1u, 2u, 3u) == vec4u(byte));
+}
+
+// Lights that reach a pixel, counted.
+@fragment
+fn reach(in: Varying) -> @location(0) vec4f {
+    let light = lights[in.light];
+    let distance = textureLoad(distance_texture, vec2i(in.position.xy), 0).x;
+    let v = (light.position - view.eye) - surface_offset(in.position.xy, distance);
+    let reaches = distance > 0.0 && (light.kind == 2u || dot(v, v) < light.range * light.range);
+    return vec4f(select(0.0, 1.0, reaches), 0.0, 0.0, 0.0);
+}
+
+// Light fragments, counted.
+@fragment
+fn one() -> @location(0) vec4f {
+    return vec4f(1.0);
+}
