@@ -29,7 +29,7 @@ pub struct PictureError {
 }
 
 /// Share of the exposed base colour that is seen where no light falls.
-const AMBIENT: f32 = 0.012;
+const AMBIENT: f32 = 0.035;
 
 impl Lit {
     /// Scale that brings the lit pixels' geometric mean luminance to a middle grey, but no more

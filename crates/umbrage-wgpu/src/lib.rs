@@ -16,7 +16,7 @@ mod pipelines;
 mod renderer;
 
 pub use renderer::{
-    REQUIRED_STENCIL_ZERO, RenderError, RendererOptions, ShadowRenderer, ViewUniform, VolumeColor,
+    LIGHT_STENCIL, RenderError, RendererOptions, ShadowRenderer, ViewUniform, VolumeColor,
 };
 
 /// WGSL of `struct View` and `umbrage_clip`, for the host's own shaders. The layout of the

@@ -98,7 +98,7 @@ impl From<&View> for ViewUniform {
 }
 
 /// The stencil state of a host's light draw: passes where lit, and leaves zero behind.
-pub const REQUIRED_STENCIL_ZERO: StencilFaceState = StencilFaceState {
+pub const LIGHT_STENCIL: StencilFaceState = StencilFaceState {
     compare: CompareFunction::Equal,
     fail_op: StencilOperation::Zero,
     depth_fail_op: StencilOperation::Zero,
@@ -256,8 +256,8 @@ impl ShadowRenderer {
             depth_write_enabled: Some(false),
             depth_compare: Some(CompareFunction::Always),
             stencil: StencilState {
-                front: REQUIRED_STENCIL_ZERO,
-                back: REQUIRED_STENCIL_ZERO,
+                front: LIGHT_STENCIL,
+                back: LIGHT_STENCIL,
                 read_mask: 0xff,
                 write_mask: 0xff,
             },

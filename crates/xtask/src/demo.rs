@@ -1,44 +1,70 @@
-//! `cargo xtask demo`: from a fresh clone to a picture of the bundled world.
+//! `cargo xtask demo`: from a fresh clone to pictures of the bundled worlds.
 
+use std::path::Path;
 use std::process::Command;
 
 use crate::steps::Steps;
 use crate::{Stop, driver, root, target_dir};
 
-/// The bundled world, relative to the repository root.
-const DEMO_SCENE: &str = "data/worlds/colosseum.glb";
+/// A bundled world, relative to the repository root, and where to stand in it.
+struct Demo {
+    scene: &'static str,
+    camera: &'static str,
+    picture: &'static str,
+}
+
+const DEMOS: [Demo; 2] = [
+    Demo {
+        scene: "data/worlds/colosseum.glb",
+        camera: "60,60,60,0,10,-40",
+        picture: "colosseum",
+    },
+    Demo {
+        scene: "data/worlds/stormkeep.glb",
+        camera: "auto",
+        picture: "stormkeep",
+    },
+];
 
 /// Exit code of `umbrage` when no usable adapter was found.
 const NO_ADAPTER: i32 = 3;
 
-/// Driver, build, render; prints where the picture is.
+/// Driver, build, render; prints where the pictures are.
 pub(crate) fn run() -> Result<(), Stop> {
     driver::ensure()?;
-    let scene = root().join(DEMO_SCENE);
-    if !scene.is_file() {
-        eprintln!("{DEMO_SCENE} is missing: is this a full clone?");
-        return Err(Stop::StepFailed);
-    }
     Steps::default().cargo("build", &["build", "--release", "-p", "umbrage-cli"])?;
-
     let folder = target_dir().join("demo");
     if let Err(error) = std::fs::create_dir_all(&folder) {
         eprintln!("cannot create {}: {error}", folder.display());
         return Err(Stop::StepFailed);
     }
-    let picture = folder.join("colosseum.png");
-    let figures = folder.join("colosseum.json");
+    for demo in &DEMOS {
+        render(demo, &folder)?;
+    }
+    println!("\nNext: target/release/umbrage --help");
+    Ok(())
+}
+
+fn render(demo: &Demo, folder: &Path) -> Result<(), Stop> {
+    let scene = demo.scene;
+    if !root().join(scene).is_file() {
+        eprintln!("{scene} is missing: is this a full clone?");
+        return Err(Stop::StepFailed);
+    }
+    let picture = folder.join(demo.picture).with_extension("png");
+    let figures = folder.join(demo.picture).with_extension("json");
     let binary = target_dir()
         .join("release/umbrage")
         .with_extension(std::env::consts::EXE_EXTENSION);
     let mut render = Command::new(binary);
-    render.arg("render").arg(DEMO_SCENE).arg("-o").arg(&picture);
     render
-        .args(["--size", "1920x1080", "--json"])
+        .args(["render", scene, "--camera", demo.camera, "--size", "1920x1080", "-o"])
+        .arg(&picture)
+        .arg("--json")
         .arg(&figures)
         .current_dir(root());
 
-    println!("\n==== render: every light of {DEMO_SCENE}, exact shadows, 1920x1080");
+    println!("\n==== render: every light of {scene}, exact shadows, 1920x1080");
     let mut code = exit_code(&mut render);
     if code == Some(NO_ADAPTER) {
         // Driver files were there, but no device behind them: a software driver always has one.
@@ -49,7 +75,6 @@ pub(crate) fn run() -> Result<(), Stop> {
         Some(0) => {
             println!("\nThe picture: {}", picture.display());
             println!("Its figures: {}", figures.display());
-            println!("Next: target/release/umbrage --help");
             Ok(())
         }
         Some(NO_ADAPTER) => {

@@ -14,13 +14,20 @@ fn position(vertex: u32) -> vec3f {
     return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
 }
 
+// Sides recede from the eye by 2^-21 of the distance: what is counted at a surface are the sides
+// before the point that much nearer. Under a grazing light the sides of a triangle run below its
+// own surface by less than depth resolves; receding, they stay below. Screen positions are the
+// same, so nothing opens, and the eye count stays. Caps do not recede: they must tie with the
+// surface that they lie in.
+const RECEDE: f32 = 1.0 - 1.0 / 2097152.0;
+
 // The vertex itself, or its image at infinity, away from the light.
-fn volume_vertex(vertex: u32, extruded: bool, light: vec4f) -> vec4f {
+fn volume_vertex(vertex: u32, extruded: bool, light: vec4f, recede: f32) -> vec4f {
     let p = position(vertex);
     if extruded {
         return umbrage_clip(view, p * light.w - light.xyz, 0.0);
     }
-    return umbrage_clip(view, p - view.eye, 1.0);
+    return umbrage_clip(view, p - view.eye, recede);
 }
 
 // Two triangles a quad: (a, a', b) and (b, a', b'), a' extruded; front faces look outward.
@@ -35,7 +42,7 @@ fn side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     let reversed = (word & 1u) == 1u;
     let vertex = select(ends.x, ends.y, at_end != reversed);
     let extruded = corner == 1u || corner >= 4u;
-    return volume_vertex(vertex, extruded, lights[light]);
+    return volume_vertex(vertex, extruded, lights[light], RECEDE);
 }
 
 // The light cap with the triangle's own vertex order, then the dark cap with the other winding. A
@@ -50,7 +57,7 @@ fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     let extruded = corner >= 3u;
     let k = select(corner, (6u - corner) % 3u, extruded);
     let vertex = triangles[3u * (caps[index / 6u] >> 1u) + k];
-    return volume_vertex(vertex, extruded, lights[light]);
+    return volume_vertex(vertex, extruded, lights[light], 1.0);
 }
 
 @fragment

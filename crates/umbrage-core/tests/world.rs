@@ -1,0 +1,143 @@
+//! World building: counts that are known, invariants that hold, validators that see.
+
+mod common;
+
+use common::{dense_soup, grid, strewn_soup};
+use glam::Vec3;
+use umbrage_core::world::{EdgeUse, World, WorldError, WorldFault};
+use umbrage_core::{Casting, Mesh};
+
+fn mesh(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
+    Mesh {
+        positions: positions.iter().copied().map(Vec3::from).collect(),
+        triangles: triangles.to_vec(),
+        casting: vec![Casting::Both; triangles.len()],
+    }
+}
+
+#[test]
+fn random_soups_keep_every_invariant() {
+    for seed in 0..40 {
+        let soup = if seed % 2 == 0 {
+            dense_soup(seed, 3 + seed as usize, 200)
+        } else {
+            strewn_soup(seed, 300, 0.1)
+        };
+        let world = World::build(&soup).unwrap();
+        world.validate().unwrap();
+        let report = &world.report;
+        assert_eq!(report.triangles + report.degenerate_triangles, soup.triangles.len());
+        assert_eq!(report.edges_by_triangles.iter().sum::<usize>(), report.unique_edges);
+        for (t, &source) in world.source.iter().enumerate() {
+            assert_eq!(world.corners(t as u32), soup.corners(source as usize));
+            assert_eq!(world.casting[t], soup.casting[source as usize]);
+        }
+    }
+}
+
+#[test]
+fn a_grid_has_the_edges_that_euler_says() {
+    let world = World::build(&grid(5)).unwrap();
+    let report = &world.report;
+    assert_eq!((report.vertices, report.welded_vertices, report.triangles), (400, 121, 200));
+    // Vertices - edges + triangles = 1 for a disc.
+    assert_eq!(report.unique_edges, 121 + 200 - 1);
+    assert_eq!(report.edges_by_triangles, [40, 280, 0, 0]);
+    assert_eq!((report.opposite_wound_pairs, report.duplicate_triangles), (0, 0));
+}
+
+#[test]
+fn a_book_of_five_pages_is_one_edge_with_five_triangles() {
+    let spine = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let pages = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 1.0]];
+    let positions: Vec<_> = spine.into_iter().chain(pages).collect();
+    let triangles: Vec<[u32; 3]> =
+        (2..7).map(|v| if v % 2 == 0 { [0, 1, v] } else { [1, 0, v] }).collect();
+    let report = World::build(&mesh(&positions, &triangles)).unwrap().report;
+    assert_eq!(report.edges_by_triangles, [10, 0, 0, 1]);
+}
+
+#[test]
+fn minus_zero_welds_with_zero_and_nothing_else_does() {
+    let next = f32::from_bits(1);
+    let soup = mesh(
+        &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.0, 0.0, -0.0], [next, 0.0, 0.0]],
+        &[[0, 1, 2], [3, 2, 1], [4, 1, 2]],
+    );
+    let report = World::build(&soup).unwrap().report;
+    assert_eq!(report.welded_vertices, 4);
+    assert_eq!(report.duplicate_triangles, 1);
+    assert_eq!(report.edges_by_triangles, [2, 2, 1, 0]);
+}
+
+#[test]
+fn triangles_with_two_equal_corners_are_dropped_and_collinear_ones_kept() {
+    let soup = mesh(
+        &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0; 3]],
+        &[[0, 1, 3], [0, 1, 2], [1, 1, 2]],
+    );
+    let report = World::build(&soup).unwrap().report;
+    assert_eq!((report.triangles, report.degenerate_triangles), (1, 2));
+}
+
+#[test]
+fn an_empty_mesh_is_an_empty_world() {
+    let world = World::build(&Mesh::default()).unwrap();
+    assert!(world.bvh.nodes.is_empty() && world.triangles.is_empty());
+    world.validate().unwrap();
+}
+
+#[test]
+fn bad_input_is_named() {
+    let good = mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
+    let mut short = good.clone();
+    short.casting.clear();
+    assert_eq!(
+        World::build(&short).unwrap_err(),
+        WorldError::CastingLength { casting: 0, triangles: 1 }
+    );
+    let mut beyond = good.clone();
+    beyond.triangles[0][1] = 3;
+    assert_eq!(
+        World::build(&beyond).unwrap_err(),
+        WorldError::IndexOutOfRange { triangle: 0, vertex: 3, vertices: 3 }
+    );
+    let mut nan = good;
+    nan.positions[2].y = f32::NAN;
+    assert_eq!(World::build(&nan).unwrap_err(), WorldError::NotFinite { vertex: 2 });
+}
+
+/// Each validator has something that turns it red.
+#[test]
+fn validators_see_each_broken_invariant() {
+    let good = World::build(&grid(3)).unwrap();
+    let broken = |damage: &dyn Fn(&mut World)| {
+        let mut world = good.clone();
+        damage(&mut world);
+        world.validate().unwrap_err()
+    };
+    assert!(matches!(broken(&|w| w.casting.truncate(1)), WorldFault::Length { .. }));
+    assert!(matches!(
+        broken(&|w| {
+            let u = &mut w.edges.of_triangle[3][1];
+            *u = EdgeUse::new(u.edge(), u.sign() > 0);
+        }),
+        WorldFault::EdgeUse { triangle: 3, side: 1, .. }
+    ));
+    assert!(matches!(
+        broken(&|w| {
+            let [a, b] = w.edges.vertices[0];
+            w.edges.vertices.push([a, b]);
+        }),
+        WorldFault::EdgeNotUnique { .. }
+    ));
+    assert!(matches!(
+        broken(&|w| w.positions[5] = w.positions[4]),
+        WorldFault::NotWelded { .. }
+    ));
+    assert!(matches!(
+        broken(&|w| w.bvh.nodes[0].max.x -= 1.0),
+        WorldFault::OutsideBox { node: 0, .. }
+    ));
+    assert!(matches!(broken(&|w| w.bvh.nodes[0].count -= 1), WorldFault::Range { .. }));
+}
