@@ -4,7 +4,7 @@
 //! edges, BVH order); each [`Light`] queries it for a subset of triangles; signed edge counters
 //! turn the subset into silhouette quads ([`volume`]); [`frame`] decides per view how each light
 //! is drawn. Positions are f32, relative to one f64 world origin.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 pub mod frame;
 pub mod light;

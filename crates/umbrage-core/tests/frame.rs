@@ -48,7 +48,7 @@ fn eye_counts_are_the_casters_on_the_segment() {
             let eye = 2.0 * r.point();
             let mut volumes = Volumes::default();
             VolumeBuilder::default().build(&world, &[light], |_| true, &mut volumes);
-            let chain: Vec<u32> = volumes.chain_of(0).iter().map(|t| t.triangle()).collect();
+            let chain: Vec<u32> = volumes.chain_triangles(0).map(|t| t.triangle()).collect();
             let (from, to) = (light.position.as_dvec3(), eye.as_dvec3());
             let Some(expected) = plain_count(&world, &chain, from, to) else { continue };
             match eye_count(&world, &light, volumes.quads_of(0), eye) {
@@ -144,5 +144,5 @@ fn a_plan_says_why_a_light_is_not_drawn_and_takes_caps_only_where_needed() {
     zfail.path = umbrage_core::frame::PathRule::ZFailAlways;
     plan.make(&world, &lights, &volumes, &view, &zfail);
     assert!(matches!(plan.lights[0].path, LightPath::ZFail(_)));
-    assert_eq!(plan.cap_triangles(0), 2 * volumes.chain_of(0).len());
+    assert_eq!(plan.cap_triangles(0), 2 * volumes.chain_triangles(0).count());
 }

@@ -6,14 +6,26 @@ use std::collections::BTreeMap;
 
 use common::{Random, dense_soup, grid, point_light, spot, strewn_soup, sun};
 use glam::{DVec3, Vec3};
-use umbrage_core::volume::{ChainTriangle, Quad, VolumeBuilder, Volumes, chain, check_closed, counter};
-use umbrage_core::world::{LightPoint, Planes, Reach, World, query};
+use umbrage_core::volume::{
+    Chain, ChainTriangle, Quad, VolumeBuilder, Volumes, check_closed, counter, facing, plain_counter,
+};
+use umbrage_core::world::{LightPoint, Planes, Reach, Subset, World, query};
 use umbrage_core::{Casting, Light};
 
-fn subset(world: &World, light: &Light) -> Vec<u32> {
-    let mut subset = Vec::new();
+fn subset(world: &World, light: &Light) -> Subset {
+    let mut subset = Subset::default();
     query(world, light, &mut subset);
     subset
+}
+
+fn chain(world: &World, light: &Light) -> Vec<Chain> {
+    let mut chain = Vec::new();
+    facing(world, light, &subset(world, light), &mut chain);
+    chain
+}
+
+fn triangles(chain: &[Chain]) -> Vec<ChainTriangle> {
+    chain.iter().flat_map(Chain::triangles).collect()
 }
 
 fn lights(seed: u64) -> Vec<Light> {
@@ -36,7 +48,8 @@ fn a_query_returns_exactly_what_the_reach_touches() {
             let reach = Reach::new(&light);
             let all = 0..world.triangles.len() as u32;
             let touched: Vec<u32> = all.filter(|&t| reach.touches(world.corners(t))).collect();
-            assert_eq!(subset(&world, &light), touched, "{light:?}");
+            let found: Vec<u32> = subset(&world, &light).triangles().collect();
+            assert_eq!(found, touched, "{light:?}");
         }
     }
 }
@@ -48,7 +61,7 @@ fn a_query_loses_no_triangle_in_reach() {
         let mut r = Random(seed);
         let world = World::build(&strewn_soup(seed, 300, 0.2)).unwrap();
         for light in lights(seed) {
-            let found = subset(&world, &light);
+            let found: Vec<u32> = subset(&world, &light).triangles().collect();
             for t in 0..world.triangles.len() as u32 {
                 let [a, b, c] = world.corners(t).map(Vec3::as_dvec3);
                 let (u, v) = (f64::from(r.signed().abs()), f64::from(r.signed().abs()));
@@ -155,18 +168,24 @@ fn quads_are_the_boundary_of_the_chain() {
         let world = World::build(&dense_soup(seed, 4 + seed as usize / 2, 150)).unwrap();
         let mut counters = vec![0; world.edges.vertices.len()];
         for light in lights(seed) {
-            let (mut cast, mut quads) = (Vec::new(), Vec::new());
-            chain(&world, &light, &subset(&world, &light), &mut cast);
-            counter(&world.edges, &cast, &mut counters, &mut quads);
-            assert_eq!(as_sums(&world, &quads), boundary(&world, &cast));
+            let cast = chain(&world, &light);
+            let (mut quads, mut plain, mut touched) = (Vec::new(), Vec::new(), Vec::new());
+            counter(&world, &cast, &mut counters, &mut touched, &mut quads);
             assert!(counters.iter().all(|&c| c == 0), "counters must end as they began");
-            check_closed(&world, &cast, &quads).unwrap();
+            let by_triangle = triangles(&cast);
+            assert_eq!(as_sums(&world, &quads), boundary(&world, &by_triangle));
+            check_closed(&world, by_triangle.iter().copied(), &quads).unwrap();
+            plain_counter(&world.edges, &by_triangle, &mut counters, &mut plain);
+            let mut sorted = quads.clone();
+            sorted.sort_unstable();
+            plain.sort_unstable();
+            assert_eq!(sorted, plain, "the fast counter must give the plain one's quads");
 
             // Counters of disjoint parts add up.
             let (first, second) = cast.split_at(cast.len() / 3);
             let (mut of_first, mut of_second) = (Vec::new(), Vec::new());
-            counter(&world.edges, first, &mut counters, &mut of_first);
-            counter(&world.edges, second, &mut counters, &mut of_second);
+            counter(&world, first, &mut counters, &mut touched, &mut of_first);
+            counter(&world, second, &mut counters, &mut touched, &mut of_second);
             let mut sum = as_sums(&world, &of_first);
             for (edge, count) in as_sums(&world, &of_second) {
                 *sum.entry(edge).or_insert(0) += count;
@@ -175,7 +194,7 @@ fn quads_are_the_boundary_of_the_chain() {
             assert_eq!(sum, as_sums(&world, &quads));
 
             if !quads.is_empty() {
-                assert!(check_closed(&world, &cast, &quads[1..]).is_err());
+                assert!(check_closed(&world, by_triangle.iter().copied(), &quads[1..]).is_err());
             }
         }
     }
@@ -195,9 +214,7 @@ fn casting_rules_choose_the_side() {
         let world = World::build(&soup).unwrap();
         for (position, expected) in [(above, from_above), (below, from_below)] {
             let light = point_light(position, 9.0);
-            let mut cast = Vec::new();
-            chain(&world, &light, &subset(&world, &light), &mut cast);
-            assert_eq!(cast.len(), expected, "{rule:?}");
+            assert_eq!(triangles(&chain(&world, &light)).len(), expected, "{rule:?}");
         }
     }
 }

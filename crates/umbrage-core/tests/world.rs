@@ -119,7 +119,7 @@ fn validators_see_each_broken_invariant() {
     assert!(matches!(broken(&|w| w.casting.truncate(1)), WorldFault::Length { .. }));
     assert!(matches!(
         broken(&|w| {
-            let u = &mut w.edges.of_triangle[3][1];
+            let u = &mut w.edges.sides[0][1][3];
             *u = EdgeUse::new(u.edge(), u.sign() > 0);
         }),
         WorldFault::EdgeUse { triangle: 3, side: 1, .. }
@@ -134,6 +134,10 @@ fn validators_see_each_broken_invariant() {
     assert!(matches!(
         broken(&|w| w.positions[5] = w.positions[4]),
         WorldFault::NotWelded { .. }
+    ));
+    assert!(matches!(
+        broken(&|w| w.clusters[0].sides[2].paired ^= 4),
+        WorldFault::Cluster { triangle: 2, side: 2 }
     ));
     assert!(matches!(
         broken(&|w| w.bvh.nodes[0].max.x -= 1.0),

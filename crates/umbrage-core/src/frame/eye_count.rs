@@ -61,7 +61,7 @@ pub fn eye_count(world: &World, light: &Light, quads: &[Quad], eye: glam::Vec3) 
             let p = corners.map(glam::Vec3::as_dvec3);
             let on_side = (0..3).any(|k| {
                 segment.eye_near_side(p[k], p[(k + 1) % 3]) && {
-                    let edge = world.edges.of_triangle[t as usize][k].edge();
+                    let edge = world.edges.of_triangle(t)[k].edge();
                     quads.iter().any(|q| q.0.edge() == edge)
                 }
             });

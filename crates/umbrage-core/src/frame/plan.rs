@@ -10,7 +10,7 @@ use super::bounds::{Rect, light_rect};
 use super::eye_count::{EyeCount, eye_count};
 use super::view::View;
 use crate::light::Light;
-use crate::volume::{ChainTriangle, Volumes};
+use crate::volume::{Chain, ChainTriangle, Volumes};
 use crate::world::World;
 
 /// How a plan is made.
@@ -144,13 +144,14 @@ impl FramePlan {
                     EyeCount::Ambiguous => LightPath::ZFail(ZFailReason::EyeOnSide),
                 }
             };
-            let chain: &[ChainTriangle] = match path {
+            let chain = match path {
                 LightPath::ZFail(_) => volumes.chain_of(number),
                 _ => &[],
             };
             let [caps, reversed_caps] = [1, -1].map(|coefficient| {
                 let first = self.caps.len() as u32;
-                self.caps.extend(chain.iter().filter(|t| t.coefficient() == coefficient));
+                let triangles = chain.iter().flat_map(Chain::triangles);
+                self.caps.extend(triangles.filter(|t| t.coefficient() == coefficient));
                 first..self.caps.len() as u32
             });
             self.lights.push(LightPlan {

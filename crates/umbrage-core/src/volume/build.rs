@@ -10,9 +10,9 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::{ChainTriangle, ClosureFault, Quad, chain, check_closed, counter};
+use super::{Chain, ChainTriangle, ClosureFault, Quad, check_closed, counter, facing};
 use crate::light::Light;
-use crate::world::{World, query};
+use crate::world::{Subset, World, query};
 
 /// One light's share of [`Volumes`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Volumes {
     /// Silhouette quads, light after light.
     pub quads: Vec<Quad>,
     /// Chains, light after light: the triangles that caps are made of.
-    pub chains: Vec<ChainTriangle>,
+    pub chains: Vec<Chain>,
 }
 
 /// Keeps the scratch memory between builds.
@@ -51,8 +51,8 @@ pub struct VolumeBuilder {
 /// What one thread needs while it builds.
 #[derive(Debug, Default)]
 struct Scratch {
-    subset: Vec<u32>,
-    chain: Vec<ChainTriangle>,
+    subset: Subset,
+    touched: Vec<Quad>,
     counters: Vec<i32>,
 }
 
@@ -125,16 +125,23 @@ impl Volumes {
     }
 
     /// The chain of one light.
-    pub fn chain_of(&self, light: usize) -> &[ChainTriangle] {
+    pub fn chain_of(&self, light: usize) -> &[Chain] {
         let range = &self.lights[light].chain;
         &self.chains[range.start as usize..range.end as usize]
+    }
+
+    /// The triangles of one light's chain, ascending.
+    pub fn chain_triangles(&self, light: usize) -> impl Iterator<Item = ChainTriangle> {
+        self.chain_of(light).iter().flat_map(Chain::triangles)
     }
 
     /// Whether every light's volume is closed.
     pub fn check_closed(&self, world: &World) -> Result<(), ClosureFault> {
         (0..self.lights.len())
             .into_par_iter()
-            .try_for_each(|light| check_closed(world, self.chain_of(light), self.quads_of(light)))
+            .try_for_each(|light| {
+                check_closed(world, self.chain_triangles(light), self.quads_of(light))
+            })
     }
 
     fn clear(&mut self) {
@@ -148,18 +155,20 @@ fn build_one(world: &World, light: &Light, scratch: &mut Scratch, out: &mut Volu
     let start = Instant::now();
     let (first_quad, first_chain) = (out.quads.len() as u32, out.chains.len() as u32);
     query(world, light, &mut scratch.subset);
-    chain(world, light, &scratch.subset, &mut scratch.chain);
-    counter(&world.edges, &scratch.chain, &mut scratch.counters, &mut out.quads);
-    out.chains.extend_from_slice(&scratch.chain);
+    facing(world, light, &scratch.subset, &mut out.chains);
+    let cast = &out.chains[first_chain as usize..];
+    counter(world, cast, &mut scratch.counters, &mut scratch.touched, &mut out.quads);
     #[cfg(debug_assertions)]
-    if let Err(fault) =
-        check_closed(world, &scratch.chain, &out.quads[first_quad as usize..])
-    {
+    if let Err(fault) = check_closed(
+        world,
+        cast.iter().flat_map(Chain::triangles),
+        &out.quads[first_quad as usize..],
+    ) {
         panic!("{fault}");
     }
     out.lights.push(LightVolume {
         subset_triangles: scratch.subset.len() as u32,
-        facing_triangles: scratch.chain.len() as u32,
+        facing_triangles: cast.iter().map(Chain::len).sum::<usize>() as u32,
         quads: first_quad..out.quads.len() as u32,
         chain: first_chain..out.chains.len() as u32,
         build_us: start.elapsed().as_secs_f32() * 1e6,

@@ -8,9 +8,14 @@
 mod build;
 mod chain;
 mod counter;
+mod facing;
+mod lanes64;
+mod plain;
 mod validate;
 
 pub use build::{LightVolume, VolumeBuilder, Volumes};
-pub use chain::{ChainTriangle, chain, coefficient};
-pub use counter::{Quad, counter};
+pub use chain::{Chain, ChainTriangle, Quad, coefficient};
+pub use counter::counter;
+pub use facing::facing;
+pub use plain::plain_counter;
 pub use validate::{ClosureFault, check_closed};

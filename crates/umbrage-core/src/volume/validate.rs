@@ -24,7 +24,7 @@ pub struct ClosureFault {
 /// vertex as many quads must start as end (the extruded sides, shared by neighbouring quads).
 pub fn check_closed(
     world: &World,
-    chain: &[ChainTriangle],
+    chain: impl IntoIterator<Item = ChainTriangle>,
     quads: &[Quad],
 ) -> Result<(), ClosureFault> {
     let mut sums: HashMap<[u32; 2], i32> = HashMap::new();

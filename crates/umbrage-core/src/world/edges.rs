@@ -7,9 +7,12 @@ use bytemuck::{Pod, Zeroable};
 use rdst::{RadixKey, RadixSort};
 
 use super::WorldReport;
+use super::clusters::LANES;
 
 /// One side of a triangle: which edge it is, and whether the triangle runs along it or against.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable,
+)]
 #[repr(transparent)]
 pub struct EdgeUse(pub u32);
 
@@ -38,14 +41,24 @@ impl EdgeUse {
 pub struct Edges {
     /// Two vertices an edge, lower number first; edges are numbered by first use.
     pub vertices: Vec<[u32; 2]>,
-    /// Three uses a triangle: sides (0,1), (1,2), (2,0) of its vertices.
-    pub of_triangle: Vec<[EdgeUse; 3]>,
+    /// Edge uses, cluster after cluster: side (0,1) of its 64 triangles, then (1,2), then (2,0).
+    pub sides: Vec<[[EdgeUse; LANES]; 3]>,
 }
 
 impl Edges {
+    /// Sides (0,1), (1,2), (2,0) of triangle `t`.
+    #[inline]
+    pub fn of_triangle(&self, t: u32) -> [EdgeUse; 3] {
+        let lane = t as usize % LANES;
+        {
+            let [a, b, c] = &self.sides[t as usize / LANES];
+            [a[lane], b[lane], c[lane]]
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.vertices[..]) + size_of_val(&self.of_triangle[..])
+        size_of_val(&self.vertices[..]) + size_of_val(&self.sides[..])
     }
 }
 
@@ -105,19 +118,16 @@ pub(super) fn unique_edges(triangles: &[[u32; 3]], report: &mut WorldReport) -> 
             edge_of_side[first as usize]
         };
     }
-    let of_triangle = (0..triangles.len() as u32)
-        .map(|t| {
-            [0, 1, 2].map(|k| {
-                let side = 3 * t + k;
-                EdgeUse::new(edge_of_side[side as usize], !runs_along(triangles, side))
-            })
-        })
-        .collect();
-    report.duplicate_triangles = count_duplicates(triangles);
-    Edges {
-        vertices,
-        of_triangle,
+    let mut sides = vec![[[EdgeUse::default(); LANES]; 3]; triangles.len().div_ceil(LANES)];
+    for t in 0..triangles.len() {
+        for k in 0..3 {
+            let side = 3 * t as u32 + k as u32;
+            let reversed = !runs_along(triangles, side);
+            sides[t / LANES][k][t % LANES] = EdgeUse::new(edge_of_side[side as usize], reversed);
+        }
     }
+    report.duplicate_triangles = count_duplicates(triangles);
+    Edges { vertices, sides }
 }
 
 fn ends(triangles: &[[u32; 3]], side: u32) -> (u32, u32) {

@@ -5,9 +5,11 @@
 //! faces** (Aldridge and Woods 2004, section 2.3): triangles point to edges.
 
 mod bvh;
+mod clusters;
 mod edges;
 mod planes;
 mod query;
+mod subset;
 mod validate;
 mod weld;
 
@@ -17,9 +19,14 @@ use glam::Vec3;
 use thiserror::Error;
 
 pub use bvh::{Bvh, Node};
+pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
-pub use planes::{LightPoint, Planes, Side};
+pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Reach, query};
+pub use subset::{Members, Subset};
+
+pub(crate) use planes::{FILTER, exact_side};
+pub(crate) use subset::lanes;
 pub use validate::WorldFault;
 
 use crate::mesh::{Casting, Mesh};
@@ -120,6 +127,8 @@ pub struct World {
     pub casting: Vec<Casting>,
     /// Unique edges and each triangle's use of them.
     pub edges: Edges,
+    /// What the counter needs to know inside each 64 triangles.
+    pub clusters: Vec<Cluster>,
     /// Plane equations of the triangles.
     pub planes: Planes,
     /// Boxes over ranges of triangles.
@@ -159,12 +168,13 @@ impl World {
         report.build_ms.bvh = clock.lap();
 
         let source: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
-        let casting = source.iter().map(|&t| mesh.casting[t as usize]).collect();
+        let casting: Vec<Casting> = source.iter().map(|&t| mesh.casting[t as usize]).collect();
         let (positions, triangles) = weld::renumber(mesh, &welded, &source);
         let planes = Planes::new(&positions, &triangles);
         report.build_ms.order = clock.lap();
 
         let edges = edges::unique_edges(&triangles, &mut report);
+        let clusters = clusters::clusters(&casting, &edges);
         report.build_ms.edges = clock.lap();
 
         let mut world = Self {
@@ -173,6 +183,7 @@ impl World {
             source,
             casting,
             edges,
+            clusters,
             planes,
             bvh,
             report,
@@ -200,6 +211,7 @@ impl World {
             + size_of_val(&self.source[..])
             + size_of_val(&self.casting[..])
             + self.edges.bytes()
+            + size_of_val(&self.clusters[..])
             + self.planes.bytes()
             + self.bvh.bytes()
     }

@@ -13,62 +13,69 @@
 //! than `6 u m`; the filter uses `8 u m = 2^-21 m`.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 
+use super::clusters::LANES;
 use crate::light::Light;
 
 /// The side of a plane: +1 in front, -1 behind, 0 exactly in it.
 pub type Side = i8;
 
-/// Plane equations, structure of arrays: `n.x - d`, positive in front.
-#[derive(Clone, Debug, Default)]
-pub struct Planes {
+/// Plane equations `n.x - d` of 64 triangles, positive in front.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct PlaneCluster {
     /// x of the unit normal.
-    pub nx: Vec<f32>,
+    pub nx: [f32; LANES],
     /// y of the unit normal.
-    pub ny: Vec<f32>,
+    pub ny: [f32; LANES],
     /// z of the unit normal.
-    pub nz: Vec<f32>,
+    pub nz: [f32; LANES],
     /// Distance of the plane from the origin along the normal.
-    pub d: Vec<f32>,
+    pub d: [f32; LANES],
 }
 
-const FILTER: f32 = 1.0 / (1 << 21) as f32;
+/// Plane equations, cluster after cluster.
+#[derive(Clone, Debug, Default)]
+pub struct Planes {
+    /// The last may be partly empty: zero planes.
+    pub clusters: Vec<PlaneCluster>,
+}
+
+pub(crate) const FILTER: f32 = 1.0 / (1 << 21) as f32;
 
 impl Planes {
     /// Planes of counter-clockwise triangles. Triangles without a trustworthy f64 normal (area
     /// lost to cancellation) get a zero plane.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let mut planes = Self::default();
-        for t in triangles {
-            let [a, b, c] = t.map(|v| positions[v as usize].as_dvec3());
-            let (u, v) = (b - a, c - a);
-            let normal = u.cross(v);
-            let length = normal.length();
-            // Each component is a difference of two products of exact factors: its rounding error
-            // is below 2^-52 of the larger product.
-            let error = u.abs().max_element() * v.abs().max_element() * 2f64.powi(-51);
-            let n = if error < length * 2f64.powi(-27) {
-                normal / length
-            } else {
-                DVec3::ZERO
+        let cluster = |triangles: &[[u32; 3]]| {
+            let mut planes = PlaneCluster {
+                nx: [0.0; LANES],
+                ny: [0.0; LANES],
+                nz: [0.0; LANES],
+                d: [0.0; LANES],
             };
-            planes.nx.push(n.x as f32);
-            planes.ny.push(n.y as f32);
-            planes.nz.push(n.z as f32);
-            planes.d.push(n.dot(a) as f32);
-        }
-        planes
+            for (lane, t) in triangles.iter().enumerate() {
+                let (n, d) = plane(t.map(|v| positions[v as usize].as_dvec3()));
+                planes.nx[lane] = n.x as f32;
+                planes.ny[lane] = n.y as f32;
+                planes.nz[lane] = n.z as f32;
+                planes.d[lane] = d as f32;
+            }
+            planes
+        };
+        Self { clusters: triangles.par_chunks(LANES).map(cluster).collect() }
     }
 
     /// The side of triangle `t`'s plane that the light is on; exact. `corners` are consulted only
     /// where the filter cannot tell.
     #[inline]
     pub fn side(&self, t: u32, light: &LightPoint, corners: impl FnOnce() -> [Vec3; 3]) -> Side {
-        let i = t as usize;
+        let (planes, i) = (&self.clusters[t as usize / LANES], t as usize % LANES);
         let [x, y, z, w] = light.homogeneous;
-        let dw = self.d[i] * w;
-        let s = self.nx[i] * x + self.ny[i] * y + self.nz[i] * z - dw;
+        let dw = planes.d[i] * w;
+        let s = planes.nx[i] * x + planes.ny[i] * y + planes.nz[i] * z - dw;
         if s.abs() > FILTER * (light.norm1 + dw.abs()) {
             return if s > 0.0 { 1 } else { -1 };
         }
@@ -77,15 +84,15 @@ impl Planes {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * size_of_val(&self.d[..])
+        size_of_val(&self.clusters[..])
     }
 }
 
 /// A light prepared for many side tests.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPoint {
-    homogeneous: [f32; 4],
-    norm1: f32,
+    pub(crate) homogeneous: [f32; 4],
+    pub(crate) norm1: f32,
 }
 
 impl LightPoint {
@@ -99,8 +106,21 @@ impl LightPoint {
     }
 }
 
+/// Unit normal and distance, or zero where cancellation ate the normal.
+fn plane([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(v);
+    let length = normal.length();
+    // Each component is a difference of two products of exact factors: its rounding error is
+    // below 2^-52 of the larger product.
+    let error = u.abs().max_element() * v.abs().max_element() * 2f64.powi(-51);
+    let n = if error < length * 2f64.powi(-27) { normal / length } else { DVec3::ZERO };
+    (n, n.dot(a))
+}
+
+/// The side without the filter.
 #[cold]
-fn exact_side(corners: [Vec3; 3], [x, y, z, w]: [f32; 4]) -> Side {
+pub(crate) fn exact_side(corners: [Vec3; 3], [x, y, z, w]: [f32; 4]) -> Side {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     let toward = DVec3::new(x.into(), y.into(), z.into());
     // A directional light is a point at infinity; any point that far along from a corner is on

@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use super::{Node, World};
+use super::{Node, Subset, World};
 use crate::light::{Light, LightShape};
 
 /// Slack on squared distances: far above the rounding of the tests below (a few 2^-24), so that
@@ -118,8 +118,8 @@ impl Cone {
     }
 }
 
-/// Replaces `subset` with the numbers of the triangles that `light` touches, ascending.
-pub fn query(world: &World, light: &Light, subset: &mut Vec<u32>) {
+/// Replaces `subset` with the triangles that `light` touches.
+pub fn query(world: &World, light: &Light, subset: &mut Subset) {
     subset.clear();
     let reach = Reach::new(light);
     let nodes = &world.bvh.nodes;
@@ -131,13 +131,13 @@ pub fn query(world: &World, light: &Light, subset: &mut Vec<u32>) {
         let node = &nodes[index as usize];
         match reach.overlap(node) {
             Overlap::None => {}
-            Overlap::Whole => subset.extend(node.range()),
+            Overlap::Whole => subset.push_range(node.range()),
             Overlap::Some if node.is_leaf() => {
-                subset.extend(node.range().filter(|&t| reach.touches(world.corners(t))));
+                push_touched(world, &reach, node, subset);
             }
             Overlap::Some if top + 2 > stack.len() => {
                 // A tree this deep comes only from pathological input: finish it without a stack.
-                subset.extend(node.range().filter(|&t| reach.touches(world.corners(t))));
+                push_touched(world, &reach, node, subset);
             }
             Overlap::Some => {
                 stack[top] = node.second;
@@ -145,6 +145,12 @@ pub fn query(world: &World, light: &Light, subset: &mut Vec<u32>) {
                 top += 2;
             }
         }
+    }
+}
+
+fn push_touched(world: &World, reach: &Reach, node: &Node, subset: &mut Subset) {
+    for t in node.range().filter(|&t| reach.touches(world.corners(t))) {
+        subset.push(t);
     }
 }
 

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::World;
+use super::clusters::LANES;
 
 /// A broken invariant, with the item at fault.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -50,6 +51,14 @@ pub enum WorldFault {
         /// The other.
         second: u32,
     },
+    /// A cluster is wrong about who else is on a side's edge.
+    #[error("the cluster of triangle {triangle} is wrong about the edge of its side {side}")]
+    Cluster {
+        /// Triangle.
+        triangle: u32,
+        /// 0, 1 or 2.
+        side: usize,
+    },
     /// A triangle leaves the box of a node above it.
     #[error("triangle {triangle} leaves the box of node {node} above it")]
     OutsideBox {
@@ -72,6 +81,7 @@ impl World {
         self.validate_lengths()?;
         self.validate_edges()?;
         self.validate_vertices()?;
+        self.validate_clusters()?;
         self.validate_tree()
     }
 
@@ -80,8 +90,16 @@ impl World {
         for (array, found) in [
             ("source", self.source.len()),
             ("casting", self.casting.len()),
-            ("edges.of_triangle", self.edges.of_triangle.len()),
-            ("planes", self.planes.d.len()),
+        ] {
+            if found != expected {
+                return Err(WorldFault::Length { array, found, expected });
+            }
+        }
+        let expected = expected.div_ceil(LANES);
+        for (array, found) in [
+            ("edges.sides", self.edges.sides.len()),
+            ("planes", self.planes.clusters.len()),
+            ("clusters", self.clusters.len()),
         ] {
             if found != expected {
                 return Err(WorldFault::Length { array, found, expected });
@@ -92,9 +110,8 @@ impl World {
 
     fn validate_edges(&self) -> Result<(), WorldFault> {
         let mut next = 0;
-        for (triangle, uses) in self.edges.of_triangle.iter().enumerate() {
-            for (side, u) in uses.iter().enumerate() {
-                let corners = self.triangles[triangle];
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            for (side, u) in self.edges.of_triangle(triangle as u32).into_iter().enumerate() {
                 let along = [corners[side], corners[(side + 1) % 3]];
                 let Some(&[low, high]) = self.edges.vertices.get(u.edge() as usize) else {
                     return Err(WorldFault::EdgeUse { triangle, side, edge: u.edge() });
@@ -120,6 +137,37 @@ impl World {
             Some(edge) => Err(WorldFault::EdgeNotUnique { edge }),
             None => Ok(()),
         }
+    }
+
+    /// A side has a partner, or needs a counter, exactly as the number and winding of the
+    /// triangles on its edge say.
+    fn validate_clusters(&self) -> Result<(), WorldFault> {
+        let mut on_edge = vec![Vec::new(); self.edges.vertices.len()];
+        for t in 0..self.triangles.len() as u32 {
+            for (k, u) in self.edges.of_triangle(t).into_iter().enumerate() {
+                on_edge[u.edge() as usize].push((t, k, u.sign()));
+            }
+        }
+        for &(t, k, sign) in on_edge.iter().flatten() {
+            let at = &self.clusters[t as usize / LANES].sides[k];
+            let (lane, bit) = (t as usize % LANES, 1 << (t as usize % LANES));
+            let edge = self.edges.of_triangle(t)[k].edge();
+            let partner = match on_edge[edge as usize][..] {
+                [(a, _, s), (b, _, r)] if s != r && a as usize / LANES == b as usize / LANES => {
+                    Some(if a == t && s == sign { b } else { a })
+                }
+                _ => None,
+            };
+            let alone = on_edge[edge as usize].len() == 1;
+            let as_stored = (at.paired & bit != 0).then_some(usize::from(at.partner[lane]));
+            let shared = at.shared & bit != 0;
+            if as_stored != partner.map(|p| p as usize % LANES)
+                || shared != (partner.is_none() && !alone)
+            {
+                return Err(WorldFault::Cluster { triangle: t, side: k });
+            }
+        }
+        Ok(())
     }
 
     fn validate_vertices(&self) -> Result<(), WorldFault> {
