@@ -1,19 +1,19 @@
 //! Writing a scene as binary glTF.
 //!
 //! Takes a [`Scene`]; gives one `.glb` file that [`load`](crate::load) reads back: geometry,
-//! instances, materials, images, lights, cameras. Transforms keep their f64 digits. Invariant: the
-//! file appears whole or not at all, since it is written under another name and then renamed.
+//! instances, materials, images, lights, cameras. The digits of f64 are written, but a node's
+//! transform is read as f32, as everywhere in glTF. Invariant: the file appears whole or not at
+//! all, since it is written under another name and then renamed.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+mod binary;
+mod json;
 
-use glam::{DMat3, DQuat, DVec3, Vec2, Vec3};
+use std::path::Path;
+
 use serde_json::{Map, Value, json};
 
-use crate::{AlphaMode, Camera, Image, Light, LightKind, Material, Mesh, Scene, SceneError};
-
-/// Near plane, in metres, of a camera that has none: glTF demands one.
-const NEAR: f64 = 0.05;
+use crate::{Scene, SceneError};
+use binary::Binary;
 
 /// Writes `scene` to `path`, replacing what is there.
 ///
@@ -37,18 +37,17 @@ pub fn glb(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     }
     let mut images = Vec::new();
     for (index, image) in scene.images.iter().enumerate() {
-        let encoded = png(image)
+        let encoded = binary::png(image)
             .map_err(|what| scene.invalid(format!("image {index} ({})", image.name), what))?;
         let view = binary.view(&encoded, None);
         images.push(json!({"name": image.name, "bufferView": view, "mimeType": "image/png"}));
     }
-    let nodes = nodes(scene, &numbers);
+    let nodes = json::nodes(scene, &numbers);
     let roots: Vec<usize> = (0..nodes.len()).collect();
-    binary.pad(0);
     let textures: Vec<Value> = (0..images.len()).map(|i| json!({"source": i})).collect();
-    let cameras: Vec<Value> = scene.cameras.iter().map(camera).collect();
-    let lights: Vec<Value> = scene.lights.iter().map(light).collect();
-    let materials: Vec<Value> = scene.materials.iter().map(material).collect();
+    let cameras: Vec<Value> = scene.cameras.iter().map(json::camera).collect();
+    let lights: Vec<Value> = scene.lights.iter().map(json::light).collect();
+    let materials: Vec<Value> = scene.materials.iter().map(json::material).collect();
     let mut used = Vec::new();
     if !lights.is_empty() {
         used.push("KHR_lights_punctual");
@@ -101,9 +100,8 @@ pub fn glb(scene: &Scene, path: &Path) -> Result<(), SceneError> {
             json!({"KHR_lights_punctual": {"lights": lights}}),
         );
     }
-    let mut json = Value::Object(root).to_string().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    save(scene, path, &json, &binary.bytes)
+    let text = Value::Object(root).to_string();
+    binary::save(scene, path, text.as_bytes(), &binary.bytes)
 }
 
 /// Refuses what the format cannot hold: values that are not finite, indices out of range.
@@ -161,239 +159,4 @@ fn check(scene: &Scene) -> Result<(), SceneError> {
         }
     }
     Ok(())
-}
-
-/// The binary chunk and what the JSON says about its parts.
-#[derive(Default)]
-struct Binary {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
-
-impl Binary {
-    fn pad(&mut self, fill: u8) {
-        self.bytes
-            .resize(self.bytes.len().next_multiple_of(4), fill);
-    }
-
-    /// Appends bytes as a buffer view; gives its index.
-    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
-        self.pad(0);
-        let mut view =
-            json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()});
-        if let Some(target) = target {
-            view["target"] = json!(target);
-        }
-        self.bytes.extend_from_slice(bytes);
-        self.views.push(view);
-        self.views.len() - 1
-    }
-
-    /// Appends float vectors as an accessor; gives its index.
-    fn floats<const N: usize>(&mut self, values: impl Iterator<Item = [f32; N]>) -> usize {
-        let (mut low, mut high) = ([f32::INFINITY; N], [f32::NEG_INFINITY; N]);
-        let mut bytes = Vec::new();
-        for value in values {
-            for i in 0..N {
-                low[i] = low[i].min(value[i]);
-                high[i] = high[i].max(value[i]);
-                bytes.extend(value[i].to_le_bytes());
-            }
-        }
-        let view = self.view(&bytes, Some(34962));
-        let (count, shape) = (bytes.len() / (4 * N), ["SCALAR", "VEC2", "VEC3"][N - 1]);
-        self.accessors.push(json!({
-            "bufferView": view, "componentType": 5126, "count": count, "type": shape,
-            "min": low.to_vec(), "max": high.to_vec(),
-        }));
-        self.accessors.len() - 1
-    }
-
-    /// Appends a mesh: one set of vertices, one primitive for each material.
-    fn mesh(&mut self, mesh: &Mesh) -> Value {
-        let position = self.floats(mesh.positions.iter().map(Vec3::to_array));
-        let mut attributes = json!({ "POSITION": position });
-        if !mesh.normals.is_empty() {
-            attributes["NORMAL"] = json!(self.floats(mesh.normals.iter().map(Vec3::to_array)));
-        }
-        if !mesh.uvs.is_empty() {
-            attributes["TEXCOORD_0"] = json!(self.floats(mesh.uvs.iter().map(Vec2::to_array)));
-        }
-        let mut groups: Vec<(u32, Vec<u8>)> = Vec::new();
-        let mut group_of = std::collections::HashMap::new();
-        for (triangle, &material) in mesh.triangles.iter().zip(&mesh.materials) {
-            let group = *group_of.entry(material).or_insert_with(|| {
-                groups.push((material, Vec::new()));
-                groups.len() - 1
-            });
-            groups[group]
-                .1
-                .extend(triangle.iter().flat_map(|v| v.to_le_bytes()));
-        }
-        let mut primitives = Vec::new();
-        for (material, indices) in groups {
-            let view = self.view(&indices, Some(34963));
-            let count = indices.len() / 4;
-            self.accessors.push(
-                json!({"bufferView": view, "componentType": 5125, "count": count, "type": "SCALAR"}),
-            );
-            let accessor = self.accessors.len() - 1;
-            primitives
-                .push(json!({"attributes": attributes, "indices": accessor, "material": material}));
-        }
-        json!({"name": mesh.name, "primitives": primitives})
-    }
-}
-
-/// Nodes of instances, lights and cameras, in this order.
-fn nodes(scene: &Scene, numbers: &[Option<usize>]) -> Vec<Value> {
-    let mut nodes = Vec::new();
-    for instance in &scene.instances {
-        let Some(mesh) = numbers[instance.mesh as usize] else {
-            continue;
-        };
-        let mut node = json!({"name": instance.name, "mesh": mesh});
-        if instance.transform != glam::DAffine3::IDENTITY {
-            let m = instance.transform.matrix3.to_cols_array();
-            let t = instance.transform.translation;
-            let rows = [
-                m[0], m[1], m[2], 0.0, m[3], m[4], m[5], 0.0, m[6], m[7], m[8], 0.0, t.x, t.y, t.z,
-                1.0,
-            ];
-            node["matrix"] = json!(rows.to_vec());
-        }
-        nodes.push(node);
-    }
-    let place = |name: &str, position: DVec3, rotation: DQuat| {
-        let (translation, rotation) = (position.to_array(), rotation.normalize().to_array());
-        json!({"name": name, "translation": translation, "rotation": rotation})
-    };
-    for (index, light) in scene.lights.iter().enumerate() {
-        let direction = light.direction.try_normalize().unwrap_or(DVec3::NEG_Z);
-        let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, direction);
-        let mut node = place(&light.name, light.position, rotation);
-        node["extensions"] = json!({"KHR_lights_punctual": {"light": index}});
-        nodes.push(node);
-    }
-    for (index, camera) in scene.cameras.iter().enumerate() {
-        let right = camera.forward.cross(camera.up);
-        let basis = DMat3::from_cols(right, camera.up, -camera.forward);
-        let mut node = place(&camera.name, camera.position, DQuat::from_mat3(&basis));
-        node["camera"] = json!(index);
-        nodes.push(node);
-    }
-    nodes
-}
-
-fn light(light: &Light) -> Value {
-    let kind = match light.kind {
-        LightKind::Point => "point",
-        LightKind::Spot { .. } => "spot",
-        LightKind::Directional => "directional",
-    };
-    let mut value = json!({
-        "name": light.name, "type": kind,
-        "color": light.color.to_array(), "intensity": light.intensity,
-    });
-    if let Some(range) = light.range {
-        value["range"] = json!(range);
-    }
-    if let LightKind::Spot {
-        inner_rad,
-        outer_rad,
-    } = light.kind
-    {
-        value["spot"] = json!({"innerConeAngle": inner_rad, "outerConeAngle": outer_rad});
-    }
-    value
-}
-
-fn camera(camera: &Camera) -> Value {
-    let near = camera.near.unwrap_or(NEAR);
-    json!({
-        "name": camera.name, "type": "perspective",
-        "perspective": {"yfov": camera.fovy_rad, "znear": near},
-    })
-}
-
-fn material(material: &Material) -> Value {
-    let mut value = json!({
-        "name": material.name,
-        "doubleSided": material.double_sided,
-        "pbrMetallicRoughness": {
-            "baseColorFactor": material.base_color.to_array(),
-            "metallicFactor": material.metallic,
-            "roughnessFactor": material.roughness,
-        },
-    });
-    if let Some(image) = material.base_color_image {
-        value["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": image });
-    }
-    let strength = material.emissive.max_element();
-    if strength > 1.0 {
-        // A power of two divides without rounding.
-        let strength = strength.log2().ceil().exp2();
-        value["emissiveFactor"] = json!((material.emissive / strength).to_array());
-        value["extensions"] =
-            json!({"KHR_materials_emissive_strength": {"emissiveStrength": strength}});
-    } else if strength > 0.0 {
-        value["emissiveFactor"] = json!(material.emissive.to_array());
-    }
-    match material.alpha {
-        AlphaMode::Opaque => {}
-        AlphaMode::Mask { cutoff } => {
-            value["alphaMode"] = json!("MASK");
-            value["alphaCutoff"] = json!(cutoff);
-        }
-        AlphaMode::Blend => value["alphaMode"] = json!("BLEND"),
-    }
-    value
-}
-
-fn png(image: &Image) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, image.size[0], image.size[1]);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header().map_err(|e| e.to_string())?;
-    writer
-        .write_image_data(&image.rgba8)
-        .map_err(|e| e.to_string())?;
-    writer.finish().map_err(|e| e.to_string())?;
-    Ok(bytes)
-}
-
-/// Writes the container beside its final place, then renames it.
-fn save(scene: &Scene, path: &Path, json: &[u8], binary: &[u8]) -> Result<(), SceneError> {
-    let body = if binary.is_empty() {
-        0
-    } else {
-        8 + binary.len()
-    };
-    let Ok(length) = u32::try_from(12 + 8 + json.len() + body) else {
-        let what = "it exceeds the 4 GiB of a GLB container".to_owned();
-        return Err(scene.invalid("scene".to_owned(), what));
-    };
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".{}.part", std::process::id()));
-    let part = PathBuf::from(part);
-    let write = || -> std::io::Result<()> {
-        let mut file = std::fs::File::create(&part)?;
-        for word in [0x4654_6C67, 2, length, json.len() as u32, 0x4E4F_534A] {
-            file.write_all(&word.to_le_bytes())?;
-        }
-        file.write_all(json)?;
-        if !binary.is_empty() {
-            file.write_all(&(binary.len() as u32).to_le_bytes())?;
-            file.write_all(b"BIN\0")?;
-            file.write_all(binary)?;
-        }
-        file.sync_all()?;
-        std::fs::rename(&part, path)
-    };
-    write().map_err(|error| {
-        let _ = std::fs::remove_file(&part); // it may not exist; the first error matters
-        SceneError::io(path)(error)
-    })
 }

@@ -389,3 +389,47 @@ fn other_versions_and_formats_are_refused_with_the_remedy() {
         Err(SceneError::Json { .. })
     ));
 }
+
+#[test]
+fn chunks_of_unknown_type_are_skipped_and_lengths_are_not_trusted() {
+    let (root, binary) = one_primitive(&TRIANGLE, 4);
+    let whole = container(&root, &binary);
+    let folder = Folder::new();
+    let load = |bytes: &[u8]| umbrage_scene::load(&folder.file("chunks.glb", bytes), &());
+    let at = 20 + u32::from_le_bytes(whole[12..16].try_into().unwrap()) as usize;
+    for at in [at, whole.len()] {
+        let mut more = whole.clone();
+        more.splice(at..at, *b"\x04\0\0\0MOREabcd");
+        let length = more.len() as u32;
+        more[8..12].copy_from_slice(&length.to_le_bytes());
+        let scene = load(&more).unwrap();
+        assert_eq!(scene.meshes[0].triangles.len(), 1);
+        assert_eq!(scene.report.oddities(), [("ignored_chunks", 1)]);
+    }
+    for length in [0, 11, 12, u32::MAX] {
+        let mut wrong = whole.clone();
+        wrong[8..12].copy_from_slice(&length.to_le_bytes());
+        assert!(matches!(load(&wrong), Err(SceneError::Container { .. })));
+    }
+}
+
+#[test]
+fn fields_that_no_scene_needs_may_be_absent() {
+    let (mut root, binary) = one_primitive(&TRIANGLE, 4);
+    root["animations"] = json!([{"channels": [{"target": {}}]}]);
+    root["materials"] = json!([{"normalTexture": {}}]);
+    root["meshes"]
+        .as_array_mut()
+        .unwrap()
+        .extend([json!({}), json!({"primitives": [{}]})]);
+    root["scenes"].as_array_mut().unwrap().push(json!({}));
+    root["extensions"] = json!({"KHR_lights_punctual": {"lights": [{}]}});
+    root["nodes"][0]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
+    let scene = load_glb(&root, &binary).unwrap();
+    assert_eq!(
+        (scene.meshes.len(), scene.meshes[0].triangles.len()),
+        (3, 1)
+    );
+    let oddities = [("skipped_primitives", 1), ("skipped_lights", 1)];
+    assert_eq!(scene.report.oddities(), oddities);
+}

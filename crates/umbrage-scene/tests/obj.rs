@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Folder, load_text};
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use umbrage_scene::{AlphaMode, SceneError};
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -137,4 +137,35 @@ fn libraries_give_materials_and_missing_ones_are_counted() {
         ),
         (1, 1, 1)
     );
+}
+
+#[test]
+fn corners_without_an_attribute_get_none() {
+    let attributes = "vn 0 0 2\nvn 0 0 0\nvt 0.25\n";
+    let faces = "f 1 2 3\nf 1//1 2//1 3//2\nf 1/1 2/1 4/1\n";
+    let scene = load_text("a.obj", &format!("{SQUARE}{attributes}{faces}")).unwrap();
+    let mesh = &scene.meshes[0];
+    let of = |t: usize| mesh.triangles[t].map(|v| mesh.normals[v as usize]);
+    assert_eq!(of(0), [Vec3::ZERO; 3]);
+    assert_eq!(of(1), [Vec3::Z, Vec3::Z, Vec3::ZERO]);
+    let uvs = mesh.triangles[2].map(|v| mesh.uvs[v as usize]);
+    assert_eq!(uvs, [Vec2::new(0.25, 1.0); 3]);
+    assert_eq!(scene.report.oddities(), [("repaired_normals", 1)]);
+}
+
+#[test]
+fn broken_statements_of_a_library_are_counted_and_the_others_kept() {
+    let folder = Folder::new();
+    let library = "Kd 9\nnewmtl a\nKd 1\nKe spectral x.rfl\nd\nmap_Kd\nNs abc\nnewmtl\nTr 0.5";
+    folder.file("a.mtl", library.as_bytes());
+    let text = format!("mtllib a.mtl\n{SQUARE}usemtl\ta\nf 1 2 3\nusemtl\nf 1 2 3");
+    let scene = umbrage_scene::load(&folder.file("a.obj", text.as_bytes()), &()).unwrap();
+    let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(
+        (names, &scene.meshes[0].materials[..]),
+        (vec!["a", ""], &[0, 1][..])
+    );
+    assert_eq!(scene.materials[0].base_color, Vec4::new(1.0, 0.0, 0.0, 1.0));
+    assert_eq!(scene.materials[1].base_color.w, 0.5);
+    assert_eq!(scene.report.oddities(), [("repaired_materials", 4)]);
 }

@@ -2,90 +2,40 @@
 //!
 //! Takes an accessor's index; gives its elements as f32 vectors or as indices. Invariant: nothing
 //! is allocated before the elements are known to lie inside their buffer view and inside the
-//! [`Budget`](crate::budget::Budget). Source: glTF 2.0 specification, sections 3.6.2 and 3.11.
+//! [`Budget`](crate::budget::Budget); the iterators of the `gltf` package, which do not check, are
+//! made only then. Source: glTF 2.0 specification, sections 3.6.2 and 3.11.
+
+use gltf::accessor::Item;
+use gltf::accessor::util::ItemIter;
+use gltf::json::accessor::sparse::Sparse;
+use gltf::json::accessor::{ComponentType, GenericComponentType, IndexComponentType, Type};
+use gltf::json::validation::Checked;
 
 use super::Context;
-use super::schema::{Accessor, Sparse};
 use crate::SceneError;
 
-/// Type of one component, by the number that the file gives.
-#[derive(Clone, Copy, PartialEq)]
-enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
-}
-
-impl Component {
-    fn new(code: u32) -> Result<Self, String> {
-        Ok(match code {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => return Err(format!("unknown component type {code}")),
-        })
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
-        }
-    }
-
-    /// The component at the start of `b`, which has at least [`Component::size`] bytes.
-    fn float(self, b: &[u8], normalized: bool) -> f32 {
-        let (value, most) = match self {
-            Self::I8 => (f32::from(b[0] as i8), 127.0),
-            Self::U8 => (f32::from(b[0]), 255.0),
-            Self::I16 => (f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
-            Self::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
-            Self::U32 => (
-                u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
-                u32::MAX as f32,
-            ),
-            Self::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-        };
-        if normalized {
-            (value / most).max(-1.0)
-        } else {
-            value
-        }
-    }
-
-    /// The same as an index; only for unsigned components.
-    fn index(self, b: &[u8]) -> u32 {
-        match self {
-            Self::U8 => u32::from(b[0]),
-            Self::U16 => u32::from(u16::from_le_bytes([b[0], b[1]])),
-            _ => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-        }
-    }
-
-    fn is_index(self) -> bool {
-        matches!(self, Self::U8 | Self::U16 | Self::U32)
-    }
-}
-
-/// Elements of one size, `stride` bytes apart.
+/// Elements `stride` bytes apart; the last ends where the bytes end.
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
-    size: usize,
     count: usize,
 }
 
 impl<'a> Elements<'a> {
-    fn iter(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
-        let (bytes, stride, size) = (self.bytes, self.stride, self.size);
-        (0..self.count).map(move |i| &bytes[i * stride..i * stride + size])
+    /// Every element as `N` components of type `T`.
+    fn read<T: Item, V: Default, const N: usize>(
+        &self,
+        convert: impl Fn(T) -> V,
+    ) -> impl Iterator<Item = [V; N]> {
+        let from = |byte| self.bytes.get(byte..).unwrap_or_default();
+        let component = |i| ItemIter::<T>::new(from(i * size_of::<T>()), self.stride);
+        let mut components: [ItemIter<'a, T>; N] = std::array::from_fn(component);
+        let mut next = move || {
+            components
+                .each_mut()
+                .map(|c| c.next().map_or(V::default(), &convert))
+        };
+        (0..self.count).map(move |_| next())
     }
 }
 
@@ -97,18 +47,27 @@ impl Context<'_> {
         from: impl FnOnce() -> String,
     ) -> Result<Vec<[f32; N]>, SceneError> {
         let accessor = self.resolve(&self.root.accessors, index, "accessor", from)?;
-        let expected = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
-        if accessor.shape != expected {
-            let what = format!("type {} where {expected} is needed", accessor.shape);
+        let expected = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
+        if accessor.type_ != Checked::Valid(expected) {
+            let found = match accessor.type_ {
+                Checked::Valid(found) => format!("{found:?}"),
+                Checked::Invalid => "unknown".to_owned(),
+            };
+            let what = format!("type {found} where {expected:?} is needed");
             return Err(self.broken(index, what));
         }
-        let component =
-            Component::new(accessor.component_type).map_err(|what| self.broken(index, what))?;
-        let size = component.size();
-        let read = |b: &[u8]| -> [f32; N] {
-            std::array::from_fn(|i| component.float(&b[i * size..], accessor.normalized))
+        let normal = |value: f32, most: f32| match accessor.normalized {
+            true => (value / most).max(-1.0),
+            false => value,
         };
-        self.read(index, size * N, read)
+        match self.component(index)? {
+            ComponentType::I8 => self.read(index, |v: i8| normal(v.into(), 127.0)),
+            ComponentType::U8 => self.read(index, |v: u8| normal(v.into(), 255.0)),
+            ComponentType::I16 => self.read(index, |v: i16| normal(v.into(), 32767.0)),
+            ComponentType::U16 => self.read(index, |v: u16| normal(v.into(), 65535.0)),
+            ComponentType::U32 => self.read(index, |v: u32| normal(v as f32, u32::MAX as f32)),
+            ComponentType::F32 => self.read(index, |v: f32| v),
+        }
     }
 
     /// All elements of accessor `index` as indices.
@@ -118,81 +77,79 @@ impl Context<'_> {
         from: impl FnOnce() -> String,
     ) -> Result<Vec<u32>, SceneError> {
         let accessor = self.resolve(&self.root.accessors, index, "accessor", from)?;
-        let component =
-            Component::new(accessor.component_type).map_err(|what| self.broken(index, what))?;
-        if accessor.shape != "SCALAR" || !component.is_index() {
-            let what = "indices must be unsigned scalars".to_owned();
-            return Err(self.broken(index, what));
-        }
-        self.read(index, component.size(), |b| component.index(b))
+        let scalar = accessor.type_ == Checked::Valid(Type::Scalar);
+        let values: Vec<[u32; 1]> = match self.component(index)? {
+            ComponentType::U8 if scalar => self.read(index, |v: u8| v.into()),
+            ComponentType::U16 if scalar => self.read(index, |v: u16| v.into()),
+            ComponentType::U32 if scalar => self.read(index, |v: u32| v),
+            _ => return Err(self.broken(index, "indices must be unsigned scalars".to_owned())),
+        }?;
+        Ok(values.into_flattened())
     }
 
-    /// Reads an accessor whose elements take `size` bytes; zeros where it has no buffer view.
-    fn read<T: Copy + Zero>(
+    fn component(&self, index: usize) -> Result<ComponentType, SceneError> {
+        match self.root.accessors[index].component_type {
+            Checked::Valid(GenericComponentType(component)) => Ok(component),
+            Checked::Invalid => Err(self.broken(index, "unknown component type".to_owned())),
+        }
+    }
+
+    /// Reads an accessor of `N` components of type `T`; zeros where it has no buffer view.
+    fn read<T: Item, V: Copy + Default, const N: usize>(
         &mut self,
         index: usize,
-        size: usize,
-        read: impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<T>, SceneError> {
+        convert: impl Fn(T) -> V,
+    ) -> Result<Vec<[V; N]>, SceneError> {
         let accessor = &self.root.accessors[index];
-        let bytes = size_of::<T>();
+        let (count, size) = (accessor.count.0, size_of::<T>() * N);
+        self.plain(index, size)?;
         let item = || format!("accessor {index}");
-        if accessor.buffer_view.is_some() {
-            self.plain(accessor, size)
-                .map_err(|what| self.broken(index, what))?;
-        }
-        self.budget.take(accessor.count, bytes, &self.path, item)?;
-        let broken = |what| self.broken(index, what);
-        let mut values: Vec<T> = match accessor.buffer_view {
-            Some(_) => self
-                .plain(accessor, size)
-                .map_err(broken)?
-                .iter()
-                .map(&read)
-                .collect(),
-            None => vec![T::ZERO; accessor.count as usize],
+        self.budget
+            .take(count, size_of::<[V; N]>(), &self.path, item)?;
+        let mut values = match self.plain(index, size)? {
+            Some(elements) => elements.read(&convert).collect(),
+            None => vec![[V::default(); N]; count as usize],
         };
         if let Some(sparse) = &accessor.sparse {
-            self.scatter(sparse, size, read, &mut values)
-                .map_err(broken)?;
+            self.sparse(sparse, convert, &mut values)
+                .map_err(|what| self.broken(index, what))?;
         }
         Ok(values)
     }
 
-    /// The elements of the accessor's own buffer view.
-    fn plain(&self, accessor: &Accessor, size: usize) -> Result<Elements<'_>, String> {
-        let view = accessor.buffer_view.ok_or("it has no buffer view")?;
-        self.elements(view, accessor.byte_offset, accessor.count, size)
+    /// The elements of the accessor's own buffer view, if it has one.
+    fn plain(&self, index: usize, size: usize) -> Result<Option<Elements<'_>>, SceneError> {
+        let accessor = &self.root.accessors[index];
+        let Some(view) = accessor.buffer_view else {
+            return Ok(None);
+        };
+        let offset = accessor.byte_offset.unwrap_or_default().0;
+        self.elements(view.value(), offset, accessor.count.0, size)
+            .map(Some)
+            .map_err(|what| self.broken(index, what))
     }
 
     /// Overwrites the elements that a sparse accessor lists.
-    fn scatter<T>(
+    fn sparse<T: Item, V: Default, const N: usize>(
         &self,
         sparse: &Sparse,
-        size: usize,
-        read: impl Fn(&[u8]) -> T,
-        values: &mut [T],
+        convert: impl Fn(T) -> V,
+        values: &mut [[V; N]],
     ) -> Result<(), String> {
-        let component = Component::new(sparse.indices.component_type)?;
-        if !component.is_index() {
+        let Checked::Valid(IndexComponentType(component)) = sparse.indices.component_type else {
             return Err("sparse indices must be unsigned".to_owned());
+        };
+        let (at, from, count) = (&sparse.indices, &sparse.values, sparse.count.0);
+        let size = component.size();
+        let at = self.elements(at.buffer_view.value(), at.byte_offset.0, count, size)?;
+        let size = size_of::<T>() * N;
+        let from = self.elements(from.buffer_view.value(), from.byte_offset.0, count, size)?;
+        let from = from.read(convert);
+        match component {
+            ComponentType::U8 => scatter(at.read(|v: u8| v.into()), from, values),
+            ComponentType::U16 => scatter(at.read(|v: u16| v.into()), from, values),
+            _ => scatter(at.read(|v: u32| v), from, values),
         }
-        let (at, from) = (&sparse.indices, &sparse.values);
-        let at = self.elements(
-            at.buffer_view,
-            at.byte_offset,
-            sparse.count,
-            component.size(),
-        )?;
-        let from = self.elements(from.buffer_view, from.byte_offset, sparse.count, size)?;
-        let len = values.len();
-        for (at, from) in at.iter().zip(from.iter()) {
-            let at = component.index(at);
-            let value = values.get_mut(at as usize);
-            *value.ok_or_else(|| format!("sparse index {at} beyond its {len} elements"))? =
-                read(from);
-        }
-        Ok(())
     }
 
     /// `count` elements of `size` bytes in a buffer view, checked to lie inside it.
@@ -204,7 +161,8 @@ impl Context<'_> {
         size: usize,
     ) -> Result<Elements<'_>, String> {
         let bytes = self.view(view_index)?;
-        let stride = self.root.buffer_views[view_index].byte_stride.unwrap_or(0);
+        let stride = self.root.buffer_views[view_index].byte_stride;
+        let stride = stride.map_or(0, |s| s.0 as u64);
         let stride = if stride == 0 { size as u64 } else { stride };
         if stride < size as u64 {
             return Err(format!(
@@ -224,7 +182,6 @@ impl Context<'_> {
         Ok(Elements {
             bytes: &bytes[offset as usize..end as usize],
             stride: stride as usize,
-            size,
             count: count as usize,
         })
     }
@@ -233,51 +190,44 @@ impl Context<'_> {
     pub(super) fn view(&self, index: usize) -> Result<&[u8], String> {
         let views = &self.root.buffer_views;
         let view = views.get(index).ok_or_else(|| {
-            format!(
-                "buffer view {index} does not exist, there are {}",
-                views.len()
-            )
+            let count = views.len();
+            format!("buffer view {index} does not exist, there are {count}")
         })?;
-        let buffer = self.buffers.get(view.buffer).ok_or_else(|| {
+        let number = view.buffer.value();
+        let buffer = self.buffers.get(number).ok_or_else(|| {
             let count = self.root.buffers.len();
-            format!(
-                "buffer {} of buffer view {index} does not exist, there are {count}",
-                view.buffer
-            )
+            format!("buffer {number} of buffer view {index} does not exist, there are {count}")
         })?;
-        let end = view.byte_offset.checked_add(view.byte_length);
-        let end = end
-            .filter(|&end| end <= buffer.len() as u64)
-            .ok_or_else(|| {
-                format!(
-                    "buffer view {index} exceeds the {} bytes of buffer {}",
-                    buffer.len(),
-                    view.buffer
-                )
-            })?;
-        Ok(&buffer[view.byte_offset as usize..end as usize])
+        let start = view.byte_offset.unwrap_or_default().0;
+        let end = start.checked_add(view.byte_length.0);
+        let end = end.filter(|&end| end <= buffer.len() as u64);
+        let end = end.ok_or_else(|| {
+            let len = buffer.len();
+            format!("buffer view {index} exceeds the {len} bytes of buffer {number}")
+        })?;
+        Ok(&buffer[start as usize..end as usize])
     }
 
     fn broken(&self, index: usize, what: String) -> SceneError {
-        let name = self.root.accessors[index].name.clone().unwrap_or_default();
         SceneError::Accessor {
             path: self.path.clone(),
             accessor: index,
-            name,
+            name: self.root.accessors[index].name.clone().unwrap_or_default(),
             what,
         }
     }
 }
 
-/// What elements without data are.
-trait Zero {
-    const ZERO: Self;
-}
-
-impl Zero for u32 {
-    const ZERO: Self = 0;
-}
-
-impl<const N: usize> Zero for [f32; N] {
-    const ZERO: Self = [0.0; N];
+/// Writes `from` to the places `at`.
+fn scatter<V, const N: usize>(
+    at: impl Iterator<Item = [u32; 1]>,
+    from: impl Iterator<Item = [V; N]>,
+    values: &mut [[V; N]],
+) -> Result<(), String> {
+    let len = values.len();
+    for ([at], from) in at.zip(from) {
+        let value = values.get_mut(at as usize);
+        *value.ok_or_else(|| format!("sparse index {at} beyond its {len} elements"))? = from;
+    }
+    Ok(())
 }

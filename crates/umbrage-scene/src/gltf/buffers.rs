@@ -1,15 +1,15 @@
 //! Buffers: the bytes that accessors and images are views of.
 //!
-//! Takes the schema and the binary chunk; gives the bytes of every buffer, each file read once
+//! Takes the root and the binary chunk; gives the bytes of every buffer, each file read once
 //! however many buffers name it. Invariant: a loaded buffer has at least the length it declares.
 
 use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-use super::schema::{Buffer, Root};
-use crate::SceneError;
-use crate::uri;
+use gltf::json::{Buffer, Root};
+
+use crate::{SceneError, uri};
 
 /// The bytes of every buffer, cut to the declared length.
 pub(super) struct Buffers {
@@ -56,13 +56,13 @@ pub(super) fn load(root: &Root, binary: Option<&[u8]>, path: &Path) -> Result<Bu
             },
             None => embedded(index, buffer, binary).map_err(fail)?,
         };
-        let length = usize::try_from(buffer.byte_length)
+        let length = usize::try_from(buffer.byte_length.0)
             .ok()
             .filter(|&l| l <= bytes.len());
         let length = length.ok_or_else(|| {
             fail(format!(
                 "{} bytes are declared, but there are {}",
-                buffer.byte_length,
+                buffer.byte_length.0,
                 bytes.len()
             ))
         })?;
@@ -75,7 +75,7 @@ pub(super) fn load(root: &Root, binary: Option<&[u8]>, path: &Path) -> Result<Bu
 fn embedded(index: usize, buffer: &Buffer, binary: Option<&[u8]>) -> Result<Rc<[u8]>, String> {
     match binary {
         Some(binary) if index == 0 => Ok(binary.into()),
-        _ if buffer.byte_length == 0 => Ok(Rc::from([])),
+        _ if buffer.byte_length.0 == 0 => Ok(Rc::from([])),
         _ => Err("it has neither a URI nor a binary chunk".to_owned()),
     }
 }

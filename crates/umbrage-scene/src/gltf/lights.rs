@@ -4,42 +4,44 @@
 //! values are in bounds; what was out of bounds is counted. Both look along the node's -Z axis.
 //! Source: <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_lights_punctual>.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::schema;
+use gltf::json::Camera as SourceCamera;
+use gltf::json::extensions::scene::khr_lights_punctual::{Light as Source, Spot, Type};
+use gltf::json::validation::Checked;
+
 use crate::{Camera, Light, LightKind, LoadReport};
 
 /// A light at a node; `None`, and counted, if its type is unknown.
 pub(super) fn light(
-    source: &schema::Light,
+    source: &Source,
     name: String,
     transform: &DAffine3,
     report: &mut LoadReport,
 ) -> Option<Light> {
     let before = report.repaired_lights;
-    let kind = match source.kind.as_deref() {
-        Some("point") => LightKind::Point,
-        Some("directional") => LightKind::Directional,
-        Some("spot") => cone(source.spot.as_ref(), report),
-        _ => {
+    let kind = match source.type_ {
+        Checked::Valid(Type::Point) => LightKind::Point,
+        Checked::Valid(Type::Directional) => LightKind::Directional,
+        Checked::Valid(Type::Spot) => cone(source.spot.as_ref(), report),
+        Checked::Invalid => {
             report.skipped_lights += 1;
             report.note(|| format!("light {name} is of unknown type, skipped"));
             return None;
         }
     };
-    let color = source.color.unwrap_or([1.0; 3]).map(|c| {
-        let kept = (c as f32).clamp(0.0, 1.0);
-        report.repaired_lights += u64::from(f64::from(kept) != c && !(0.0..=1.0).contains(&c));
-        if kept.is_nan() { 0.0 } else { kept }
+    let color = source.color.map(|c| {
+        report.repaired_lights += u64::from(!(0.0..=1.0).contains(&c));
+        if c.is_nan() { 0.0 } else { c.clamp(0.0, 1.0) }
     });
-    let mut intensity = source.intensity.unwrap_or(1.0) as f32;
+    let mut intensity = source.intensity;
     if !intensity.is_finite() || intensity < 0.0 {
         report.repaired_lights += 1;
         intensity = if intensity > 0.0 { f32::MAX } else { 0.0 };
     }
-    let range = source.range.map(|r| r as f32);
+    let range = source.range;
     let bounded = range.filter(|r| r.is_finite() && *r > 0.0);
     report.repaired_lights += u64::from(range != bounded);
 
@@ -61,55 +63,49 @@ pub(super) fn light(
 }
 
 /// The cone of a spot light: 0 <= inner < outer <= 90 degrees.
-fn cone(spot: Option<&schema::Spot>, report: &mut LoadReport) -> LightKind {
-    let outer = spot.and_then(|s| s.outer_cone_angle);
-    let inner = spot.and_then(|s| s.inner_cone_angle).unwrap_or(0.0);
-    let asked = (inner, outer.unwrap_or(FRAC_PI_4));
+fn cone(spot: Option<&Spot>, report: &mut LoadReport) -> LightKind {
+    let asked = spot.map_or((0.0, FRAC_PI_4), |s| {
+        (s.inner_cone_angle, s.outer_cone_angle)
+    });
     let outer = if asked.1 > 0.0 {
         asked.1.min(FRAC_PI_2)
     } else {
         FRAC_PI_4
     };
-    let inner = inner.clamp(0.0, outer);
+    let inner = asked.0.clamp(0.0, outer);
     // Equal angles would divide by zero in the falloff of the extension's text.
-    let inner = if (inner as f32) < outer as f32 {
-        inner
-    } else {
-        outer * 0.999
-    };
+    let inner = if inner < outer { inner } else { outer * 0.999 };
     report.repaired_lights += u64::from((inner, outer) != asked);
     LightKind::Spot {
-        inner_rad: inner as f32,
-        outer_rad: outer as f32,
+        inner_rad: inner,
+        outer_rad: outer,
     }
 }
 
 /// A camera at a node; `None`, and counted, if it is orthographic or its angle is unusable.
 pub(super) fn camera(
-    source: &schema::Camera,
+    source: &SourceCamera,
     name: String,
     transform: &DAffine3,
     report: &mut LoadReport,
 ) -> Option<Camera> {
     let perspective = source.perspective.as_ref();
-    let fovy = perspective
-        .and_then(|p| p.yfov)
-        .filter(|f| *f > 0.0 && *f < PI);
+    let fovy = perspective.map(|p| p.yfov).filter(|f| *f > 0.0 && *f < PI);
     let axes = basis(transform);
-    let (Some(fovy_rad), Some((forward, up))) = (fovy, axes) else {
+    let (Some(fovy), Some((forward, up))) = (fovy, axes) else {
         report.skipped_cameras += 1;
         report.note(|| format!("camera {name} is orthographic or has no usable view, skipped"));
         return None;
     };
     let near = perspective
-        .and_then(|p| p.znear)
+        .map(|p| f64::from(p.znear))
         .filter(|n| n.is_finite() && *n > 0.0);
     Some(Camera {
         name,
         position: transform.translation,
         forward,
         up,
-        fovy_rad,
+        fovy_rad: f64::from(fovy),
         near,
     })
 }

@@ -1,6 +1,6 @@
 //! Materials and the base colour images that they reach.
 //!
-//! Takes the schema; gives `scene.materials`, one for each glTF material and under the same index,
+//! Takes the root; gives `scene.materials`, one for each glTF material and under the same index,
 //! and `scene.images`, only those that a base colour uses. An image that cannot be had is counted
 //! and left out, never an error. Source: glTF 2.0 specification, section 3.9.
 
@@ -8,7 +8,12 @@ use std::collections::HashMap;
 
 use glam::{Vec3, Vec4};
 
-use super::schema::{Image as Declared, Material as Source, TextureReference};
+use gltf::json::extensions::material::PbrSpecularGlossiness;
+use gltf::json::image::Image as Declared;
+use gltf::json::material::{AlphaMode as SourceAlpha, Material as Source, PbrBaseColorFactor};
+use gltf::json::texture::Info;
+use gltf::json::validation::Checked;
+
 use super::{Context, name_or};
 use crate::image::{self, Decoder, ImageError};
 use crate::{AlphaMode, LoadReport, Material, Progress, Scene, SceneError, uri};
@@ -31,13 +36,7 @@ pub(super) fn load(
             .pbr_metallic_roughness
             .base_color_texture
             .as_ref()
-            .or_else(|| {
-                source
-                    .extensions
-                    .specular
-                    .as_ref()
-                    .and_then(|s| s.diffuse_texture.as_ref())
-            });
+            .or_else(|| specular(source)?.diffuse_texture.as_ref());
         if let Some(texture) = texture {
             material.base_color_image = images.of(context, scene, texture);
         }
@@ -47,45 +46,48 @@ pub(super) fn load(
     Ok(())
 }
 
+/// What `KHR_materials_pbrSpecularGlossiness` says, which a base colour overrides.
+fn specular(source: &Source) -> Option<&PbrSpecularGlossiness> {
+    source.extensions.as_ref()?.pbr_specular_glossiness.as_ref()
+}
+
 /// The values of a material, clamped to their bounds.
 fn plain(source: &Source, index: usize, report: &mut LoadReport) -> Material {
     let pbr = &source.pbr_metallic_roughness;
-    let specular = source.extensions.specular.as_ref();
-    let base = pbr
-        .base_color_factor
-        .or(specular.and_then(|s| s.diffuse_factor))
-        .unwrap_or([1.0; 4]);
-    let strength = source
-        .extensions
-        .emissive
-        .as_ref()
-        .and_then(|e| e.emissive_strength);
-    let mut clamp = |value: f64, most: f64| {
+    let specular = specular(source);
+    let white = PbrBaseColorFactor::default().0;
+    let base = match specular {
+        Some(specular) if pbr.base_color_factor.0 == white => specular.diffuse_factor.0,
+        _ => pbr.base_color_factor.0,
+    };
+    let emissive = source.extensions.as_ref();
+    let strength = emissive.and_then(|e| Some(e.emissive_strength.as_ref()?.emissive_strength.0));
+    let mut clamp = |value: f32, most: f32| {
         let kept = if value.is_nan() {
             0.0
         } else {
             value.clamp(0.0, most)
         };
         report.repaired_materials += u64::from(kept != value);
-        kept as f32
+        kept
     };
     let base_color = Vec4::from(base.map(|c| clamp(c, 1.0)));
     let strength = clamp(strength.unwrap_or(1.0), 1e9);
-    let emissive = source.emissive_factor.unwrap_or([0.0; 3]);
+    let emissive = source.emissive_factor.0;
     let emissive = Vec3::from(emissive.map(|c| clamp(c, 1.0))) * strength;
-    let roughness = clamp(pbr.roughness_factor.unwrap_or(1.0), 1.0);
+    let roughness = clamp(pbr.roughness_factor.0, 1.0);
     let metallic = if specular.is_some() {
         0.0
     } else {
-        pbr.metallic_factor.unwrap_or(1.0)
+        pbr.metallic_factor.0
     };
     let metallic = clamp(metallic, 1.0);
-    let cutoff = clamp(source.alpha_cutoff.unwrap_or(0.5), f64::from(f32::MAX));
-    let alpha = match source.alpha_mode.as_deref() {
-        None | Some("OPAQUE") => AlphaMode::Opaque,
-        Some("MASK") => AlphaMode::Mask { cutoff },
-        Some("BLEND") => AlphaMode::Blend,
-        Some(_) => {
+    let cutoff = clamp(source.alpha_cutoff.unwrap_or_default().0, f32::MAX);
+    let alpha = match source.alpha_mode {
+        Checked::Valid(SourceAlpha::Opaque) => AlphaMode::Opaque,
+        Checked::Valid(SourceAlpha::Mask) => AlphaMode::Mask { cutoff },
+        Checked::Valid(SourceAlpha::Blend) => AlphaMode::Blend,
+        Checked::Invalid => {
             report.repaired_materials += 1;
             AlphaMode::Opaque
         }
@@ -110,17 +112,9 @@ struct Images {
 
 impl Images {
     /// The index in `scene.images` of a texture's image, if it can be had.
-    fn of(
-        &mut self,
-        context: &Context<'_>,
-        scene: &mut Scene,
-        texture: &TextureReference,
-    ) -> Option<u32> {
-        let source = context
-            .root
-            .textures
-            .get(texture.index)
-            .and_then(|t| t.source);
+    fn of(&mut self, context: &Context<'_>, scene: &mut Scene, texture: &Info) -> Option<u32> {
+        let source = context.root.textures.get(texture.index.value());
+        let source = source.map(|t| t.source.value());
         let declared = source.and_then(|i| Some((i, context.root.images.get(i)?)));
         let Some((index, declared)) = declared else {
             scene.report.missing_images += 1;
@@ -149,7 +143,7 @@ impl Images {
 /// The encoded bytes of an image.
 fn bytes(context: &Context<'_>, declared: &Declared) -> Result<Vec<u8>, String> {
     match (declared.buffer_view, &declared.uri) {
-        (Some(view), _) => Ok(context.view(view)?.to_vec()),
+        (Some(view), _) => Ok(context.view(view.value())?.to_vec()),
         (None, Some(uri)) => uri::fetch(uri, &context.path),
         (None, None) => Err("it has neither a buffer view nor a URI".to_owned()),
     }

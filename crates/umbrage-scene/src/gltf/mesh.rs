@@ -1,6 +1,6 @@
 //! Meshes: the primitives of each glTF mesh joined into one triangle list.
 //!
-//! Takes the schema and the accessors; gives `scene.meshes`, one for each glTF mesh and under the
+//! Takes the root and the accessors; gives `scene.meshes`, one for each glTF mesh and under the
 //! same index. Invariant: indices are in range and positions finite. Primitives that name the same
 //! attributes share their vertices. Source: glTF 2.0 specification, section 3.7.2.
 
@@ -8,7 +8,11 @@ use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
 
-use super::schema::Primitive;
+use gltf::Semantic;
+use gltf::json::Index;
+use gltf::json::mesh::{Mode, Primitive};
+use gltf::json::validation::Checked;
+
 use super::{Context, name_or};
 use crate::{Material, Mesh, Progress, Scene, SceneError};
 
@@ -81,11 +85,18 @@ fn append(
     at: At,
     primitive: &Primitive,
 ) -> Result<(), SceneError> {
-    let mode = primitive.mode.unwrap_or(4);
-    let Some(position) = primitive.attributes.position.filter(|_| mode >= 4) else {
-        if mode > 6 {
-            return Err(context.broken_primitive(at, format!("unknown mode {mode}")));
-        }
+    let Checked::Valid(mode) = primitive.mode else {
+        return Err(context.broken_primitive(at, "unknown mode".to_owned()));
+    };
+    let solid = matches!(
+        mode,
+        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+    );
+    let accessor = |semantic| {
+        let accessor = primitive.attributes.get(&Checked::Valid(semantic));
+        accessor.map(Index::value)
+    };
+    let Some(position) = accessor(Semantic::Positions).filter(|_| solid) else {
         scene.report.skipped_primitives += 1;
         let item = context.primitive_item(at);
         scene
@@ -93,16 +104,13 @@ fn append(
             .note(|| format!("{item}: points, lines or no positions, skipped"));
         return Ok(());
     };
-    if mode > 6 {
-        return Err(context.broken_primitive(at, format!("unknown mode {mode}")));
-    }
     if primitive.targets.is_some() {
         scene.report.ignored_morphs += 1;
     }
     let attributes = (
         position,
-        primitive.attributes.normal,
-        primitive.attributes.uv,
+        accessor(Semantic::Normals),
+        accessor(Semantic::TexCoords(0)),
     );
     let (base, count) = match shared.get(&attributes) {
         Some(&range) => range,
@@ -115,7 +123,7 @@ fn append(
     let indices = match primitive.indices {
         Some(accessor) => {
             let item = context.primitive_item(at);
-            Some(context.indices(accessor, || item)?)
+            Some(context.indices(accessor.value(), || item)?)
         }
         None => None,
     };
@@ -125,15 +133,10 @@ fn append(
         return Err(context.broken_primitive(at, what));
     }
     let length = indices.as_ref().map_or(count as usize, Vec::len);
-    let triangles = if mode == 4 {
-        length / 3
-    } else {
-        length.saturating_sub(2)
-    };
-    let left = if mode == 4 {
-        length % 3
-    } else {
-        (1..3).contains(&length) as usize * length
+    let (triangles, left) = match mode {
+        Mode::Triangles => (length / 3, length % 3),
+        _ if length < 3 => (0, length),
+        _ => (length - 2, 0),
     };
     scene.report.leftover_vertices += left as u64;
 
@@ -155,11 +158,11 @@ fn append(
 
 /// Places in the index list of the corners of triangle `t`. Every second triangle of a strip is
 /// turned, so that all have the winding of the first.
-fn corners(mode: u32, t: usize) -> [usize; 3] {
+fn corners(mode: Mode, t: usize) -> [usize; 3] {
     match mode {
-        5 if t % 2 == 1 => [t, t + 2, t + 1],
-        5 => [t, t + 1, t + 2],
-        6 => [t + 1, t + 2, 0],
+        Mode::TriangleStrip if t % 2 == 1 => [t, t + 2, t + 1],
+        Mode::TriangleStrip => [t, t + 1, t + 2],
+        Mode::TriangleFan => [t + 1, t + 2, 0],
         _ => [3 * t, 3 * t + 1, 3 * t + 2],
     }
 }
@@ -243,7 +246,7 @@ fn material(
     primitive: &Primitive,
 ) -> Result<u32, SceneError> {
     let declared = &context.root.materials;
-    match primitive.material {
+    match primitive.material.map(|m| m.value()) {
         Some(material) => {
             context.resolve(declared, material, "material", || {
                 context.primitive_item(at)

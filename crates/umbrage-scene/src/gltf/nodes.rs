@@ -1,14 +1,16 @@
 //! The node tree: instances, lights and cameras in world space.
 //!
-//! Takes the schema; gives `scene.instances`, `scene.lights` and `scene.cameras` in the order of
+//! Takes the root; gives `scene.instances`, `scene.lights` and `scene.cameras` in the order of
 //! the tree. Transforms are composed in f64. Invariant: every node is visited at most once, on a
 //! stack of our own, so that neither cycles nor deep trees do harm.
 
 use std::collections::HashSet;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 
-use super::schema::Node;
+use gltf::json::extensions::scene::khr_lights_punctual::Light;
+use gltf::json::{Index, Node, Value};
+
 use super::{Context, lights, name_or};
 use crate::{Instance, Progress, Scene, SceneError};
 
@@ -43,8 +45,8 @@ pub(super) fn load(
         }
         scene.report.nodes += 1;
         progress.advance(scene.report.nodes);
-        let visibility = node.extensions.visibility.as_ref();
-        if visibility.and_then(|v| v.visible) == Some(false) {
+        let visibility = extension(node, "KHR_node_visibility").and_then(|v| v.get("visible"));
+        if visibility == Some(&Value::Bool(false)) {
             scene.report.hidden_nodes += 1;
             continue;
         }
@@ -58,15 +60,16 @@ pub(super) fn load(
             });
         }
         place(context, scene, index, node, transform)?;
-        stack.extend(
-            node.children
-                .iter()
-                .rev()
-                .map(|&child| (child, Some(index), transform)),
-        );
+        let below = node.children.iter().flatten().rev();
+        stack.extend(below.map(|child| (child.value(), Some(index), transform)));
     }
     unique_light_names(scene);
     Ok(())
+}
+
+/// What a node says about an extension that the package has no type for.
+fn extension<'a>(node: &'a Node, name: &str) -> Option<&'a Value> {
+    node.extensions.as_ref()?.others.get(name)
 }
 
 /// The nodes to start from.
@@ -75,15 +78,16 @@ fn roots(context: &Context<'_>) -> Result<Vec<usize>, SceneError> {
     if let Some(first) = root.scenes.first() {
         let scene = match root.scene {
             Some(index) => {
-                context.resolve(&root.scenes, index, "scene", || "the file".to_owned())?
+                let file = || "the file".to_owned();
+                context.resolve(&root.scenes, index.value(), "scene", file)?
             }
             None => first,
         };
-        return Ok(scene.nodes.clone());
+        return Ok(scene.nodes.iter().map(Index::value).collect());
     }
     let mut is_child = vec![false; root.nodes.len()];
-    for &child in root.nodes.iter().flat_map(|n| &n.children) {
-        if let Some(flag) = is_child.get_mut(child) {
+    for child in root.nodes.iter().flat_map(|n| &n.children).flatten() {
+        if let Some(flag) = is_child.get_mut(child.value()) {
             *flag = true;
         }
     }
@@ -92,7 +96,7 @@ fn roots(context: &Context<'_>) -> Result<Vec<usize>, SceneError> {
 
 /// The node's own transform; unit quaternions are made so, and counted if they were far from it.
 fn local(node: &Node, repaired: &mut u64) -> DAffine3 {
-    if let Some(m) = node.matrix {
+    if let Some(m) = node.matrix.map(|m| m.map(f64::from)) {
         if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
             *repaired += 1;
         }
@@ -103,9 +107,9 @@ fn local(node: &Node, repaired: &mut u64) -> DAffine3 {
             translation: column(12),
         };
     }
-    let translation = DVec3::from(node.translation.unwrap_or([0.0; 3]));
-    let scale = DVec3::from(node.scale.unwrap_or([1.0; 3]));
-    let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    let translation = Vec3::from(node.translation.unwrap_or([0.0; 3])).as_dvec3();
+    let scale = Vec3::from(node.scale.unwrap_or([1.0; 3])).as_dvec3();
+    let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
     let length = rotation.length();
     if (length - 1.0).abs() > 1e-3 || length.is_nan() {
         *repaired += 1;
@@ -128,10 +132,11 @@ fn place(
 ) -> Result<(), SceneError> {
     let root = context.root;
     let item = || format!("node {index} ({})", name_or(&node.name, "node", index));
-    if let Some(mesh) = node.mesh {
+    if let Some(mesh) = node.mesh.map(|m| m.value()) {
         context.resolve(&root.meshes, mesh, "mesh", item)?;
         scene.report.ignored_skins += u64::from(node.skin.is_some());
-        scene.report.ignored_instancing += u64::from(node.extensions.instancing.is_some());
+        scene.report.ignored_instancing +=
+            u64::from(extension(node, "EXT_mesh_gpu_instancing").is_some());
         let name = name_or(&node.name, "node", index);
         scene.instances.push(Instance {
             name,
@@ -140,14 +145,15 @@ fn place(
         });
     }
     if let Some(camera) = node.camera {
-        let source = context.resolve(&root.cameras, camera, "camera", item)?;
+        let source = context.resolve(&root.cameras, camera.value(), "camera", item)?;
         let name = node.name.clone().or_else(|| source.name.clone());
         let name = name_or(&name, "camera", scene.cameras.len());
         let camera = lights::camera(source, name, &transform, &mut scene.report);
         scene.cameras.extend(camera);
     }
-    if let Some(light) = node.extensions.light.as_ref().and_then(|l| l.light) {
-        let source = context.resolve(&root.extensions.lights.lights, light, "light", item)?;
+    let light = node.extensions.as_ref();
+    if let Some(light) = light.and_then(|e| e.khr_lights_punctual.as_ref()) {
+        let source: &Light = context.resolve(root.as_ref(), light.light.value(), "light", item)?;
         let name = node.name.clone().or_else(|| source.name.clone());
         let name = name_or(&name, "light", scene.lights.len());
         scene

@@ -1,40 +1,32 @@
-//! A polygon as triangles.
+//! A concave polygon as triangles.
 //!
-//! Takes the corners of a polygon; gives `corners - 2` triangles of its winding: a fan if it is
-//! convex, else by cutting ears in the plane that it faces most. Polygons of more than
-//! [`MOST_EARS`] corners, and those that have no ear left, fall back to the fan, whose boundary is
-//! the polygon's too. Source: Meisters, "Polygons have ears", 1975.
+//! Takes the corners of a polygon; gives `corners - 2` triangles of its winding, by cutting ears in
+//! the plane that it faces most. Convex polygons and those of more than [`MOST_EARS`] corners are
+//! left alone, since they may become a fan; what has no ear left becomes one too, whose boundary is
+//! the polygon's. Source: Meisters, "Polygons have ears", 1975.
 
 use glam::{DVec2, DVec3, Vec3};
 
 /// Cutting ears takes quadratic to cubic time, so it is bounded.
 const MOST_EARS: usize = 256;
 
-/// Appends the triangles of a polygon with `count` corners at `place(0..count)`.
-pub(super) fn triangulate(
+/// Appends the triangles of a concave polygon with `count` corners at `place(0..count)`; false if
+/// it is to be a fan.
+pub(super) fn cut(
     count: usize,
     place: impl Fn(usize) -> Vec3,
     triangles: &mut Vec<[u32; 3]>,
-) {
-    if (4..=MOST_EARS).contains(&count) {
-        let flat = flatten(count, &place);
-        let convex = |i: usize| {
-            turn(
-                flat[(i + count - 1) % count],
-                flat[i],
-                flat[(i + 1) % count],
-            )
-        };
-        if (0..count).any(|i| convex(i) < 0.0) {
-            cut_ears(&flat, triangles);
-            return;
-        }
+) -> bool {
+    if !(4..=MOST_EARS).contains(&count) {
+        return false;
     }
-    fan(&(0..count as u32).collect::<Vec<_>>(), triangles);
-}
-
-fn fan(corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
-    triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+    let flat = flatten(count, &place);
+    let at = |i: usize| flat[i % count];
+    let concave = (0..count).any(|i| turn(at(i + count - 1), at(i), at(i + 1)) < 0.0);
+    if concave {
+        cut_ears(&flat, triangles);
+    }
+    concave
 }
 
 /// The corners in the plane of two axes, turned so that the polygon winds counter-clockwise.
@@ -79,5 +71,5 @@ fn cut_ears(flat: &[DVec2], triangles: &mut Vec<[u32; 3]>) {
         triangles.push([corner(ear + n - 1), corner(ear), corner(ear + 1)]);
         left.remove(ear);
     }
-    fan(&left, triangles);
+    triangles.extend(left[1..].windows(2).map(|w| [left[0], w[0], w[1]]));
 }

@@ -1,0 +1,113 @@
+//! The JSON of a file as the types of the `gltf` package.
+//!
+//! Takes the text; gives a [`Root`] of version 2 without unknown required extensions. Its indices
+//! are not checked yet: who follows one resolves it. The package demands fields that the
+//! specification leaves optional or that no scene needs; a file that lacks one is completed and
+//! read again.
+
+use std::path::Path;
+
+use gltf::json::{self, Root, Value};
+
+use crate::SceneError;
+
+type Object = serde_json::Map<String, Value>;
+
+/// Extensions that may be required: they change nothing, or what they change is handled here.
+const KNOWN_EXTENSIONS: [&str; 8] = [
+    "KHR_lights_punctual",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
+    "KHR_texture_transform",
+    "KHR_texture_basisu",
+    "EXT_texture_webp",
+    "KHR_animation_pointer",
+    "KHR_xmp_json_ld",
+];
+
+/// The root of a file that can be loaded.
+pub(super) fn parse(text: &[u8], path: &Path) -> Result<Root, SceneError> {
+    let root = read(text).map_err(|source| SceneError::Json {
+        path: path.to_owned(),
+        source,
+    })?;
+    if !root.asset.version.starts_with("2.") && root.asset.version != "2" {
+        return Err(SceneError::Version {
+            path: path.to_owned(),
+            version: root.asset.version,
+        });
+    }
+    let unknown =
+        |e: &&String| !KNOWN_EXTENSIONS.contains(&e.as_str()) && !e.starts_with("KHR_materials_");
+    if let Some(extension) = root.extensions_required.iter().find(unknown) {
+        let (path, extension) = (path.to_owned(), extension.clone());
+        return Err(SceneError::UnsupportedExtension { path, extension });
+    }
+    Ok(root)
+}
+
+/// Reads the text as it is, else completed; the first error has line and column.
+fn read(text: &[u8]) -> Result<Root, json::Error> {
+    json::deserialize::from_slice(text).or_else(|first: json::Error| {
+        let completed = json::deserialize::from_slice::<Value>(text).map(complete);
+        completed
+            .and_then(json::deserialize::from_value)
+            .map_err(|_| first)
+    })
+}
+
+/// Leaves out what is never read, and gives fields that may be absent a value that says so.
+fn complete(mut root: Value) -> Value {
+    let default = |item: &mut Object, key: &str, value: Value| {
+        item.entry(key).or_insert(value);
+    };
+    let Some(root_object) = root.as_object_mut() else {
+        return root;
+    };
+    for unread in ["animations", "samplers", "skins"] {
+        root_object.remove(unread);
+    }
+    for scene in list(root_object, "scenes") {
+        default(scene, "nodes", Value::Array(vec![]));
+    }
+    for mesh in list(root_object, "meshes") {
+        default(mesh, "primitives", Value::Array(vec![]));
+        for primitive in list(mesh, "primitives") {
+            default(primitive, "attributes", Value::Object(Object::new()));
+        }
+    }
+    for material in list(root_object, "materials") {
+        for unread in ["normalTexture", "occlusionTexture", "emissiveTexture"] {
+            material.remove(unread);
+        }
+    }
+    for camera in list(root_object, "cameras") {
+        default(camera, "type", Value::from(""));
+        camera.remove("orthographic");
+        if let Some(Value::Object(perspective)) = camera.get_mut("perspective") {
+            default(perspective, "yfov", Value::from(0));
+            default(perspective, "znear", Value::from(0));
+        }
+    }
+    for node in list(root_object, "nodes") {
+        if let Some(Value::Object(extensions)) = node.get_mut("extensions") {
+            let light = extensions.get("KHR_lights_punctual");
+            if light.is_some_and(|l| l.get("light").is_none()) {
+                extensions.remove("KHR_lights_punctual");
+            }
+        }
+    }
+    if let Some(Value::Object(lights)) = root.pointer_mut("/extensions/KHR_lights_punctual") {
+        default(lights, "lights", Value::Array(vec![]));
+        for light in list(lights, "lights") {
+            default(light, "type", Value::from(""));
+        }
+    }
+    root
+}
+
+/// The objects in the array under `key`; none if it is anything else.
+fn list<'a>(item: &'a mut Object, key: &str) -> impl Iterator<Item = &'a mut Object> + use<'a> {
+    let items = item.get_mut(key).and_then(Value::as_array_mut);
+    items.into_iter().flatten().filter_map(Value::as_object_mut)
+}
