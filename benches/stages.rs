@@ -63,7 +63,12 @@ fn counters(bencher: Bencher<'_, '_>, scene: &str) {
     chain(&stage.world, &lights[0], &subset, &mut cast);
     bencher.bench_local(|| {
         quads.clear();
-        counter(&stage.world.edges, black_box(&cast), &mut counts, &mut quads);
+        counter(
+            &stage.world.edges,
+            black_box(&cast),
+            &mut counts,
+            &mut quads,
+        );
     });
 }
 

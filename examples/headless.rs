@@ -13,13 +13,19 @@ use umbrage_lab::stage::{Casters, Stage};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
-    let scene = args.next().unwrap_or("gen:city?triangles=20000&lights=128".into());
+    let scene = args
+        .next()
+        .unwrap_or("gen:city?triangles=20000&lights=128".into());
     let picture = args.next().unwrap_or("target/headless.png".into());
 
     // File or generator -> triangles -> welded world in BVH order.
     let stage = Stage::new(umbrage_scene::open(&scene, &())?, Casters::Material, None)?;
     let lights = stage.lights(None);
-    let camera = stage.scene.cameras.first().ok_or("the scene has no camera")?;
+    let camera = stage
+        .scene
+        .cameras
+        .first()
+        .ok_or("the scene has no camera")?;
     let (eye, ahead) = (camera.position, camera.position + camera.forward);
     let size = [960, 540];
     let fovy = camera.fovy_rad as f32;
@@ -30,6 +36,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let lit = lab.render(&stage, &lights, &view, Method::Counter, 1)?;
     write_png(Path::new(&picture), size, &lit.to_rgb8())?;
     let [zpass, zfail, skipped] = lab.lights_by_path();
-    println!("{picture}: {} lights, {zpass} z-pass, {zfail} z-fail, {skipped} skipped", lights.len());
+    println!(
+        "{picture}: {} lights, {zpass} z-pass, {zfail} z-fail, {skipped} skipped",
+        lights.len()
+    );
     Ok(())
 }

@@ -36,6 +36,7 @@ pub(crate) enum Verb {
     Render(RenderArgs),
     Inspect(InspectArgs),
     Check(CheckArgs),
+    Volumes(VolumesArgs),
     Gen(GenArgs),
 }
 
@@ -119,6 +120,23 @@ Examples:
   umbrage check map.glb
   umbrage check map.glb --method shadowmap-1024 --json -
       How wrong cube maps of 1024 texels a side are on the same frame";
+
+/// Generates volumes by every method, without drawing, and compares them.
+#[derive(Debug, Args)]
+#[command(after_help = VOLUMES_EXAMPLES)]
+pub(crate) struct VolumesArgs {
+    /// A .glb, .gltf or .obj file, or gen:NAME?key=value&...
+    pub(crate) scene: String,
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+const VOLUMES_EXAMPLES: &str = "\
+Examples:
+  umbrage volumes map.glb
+      Nanoseconds a candidate triangle, quads and polygons of counter, crow and brute
+  umbrage volumes map.glb --range 1e30 --repeat 9 --json -
+      Every triangle a candidate of every light";
 
 /// Writes a generated world as a .glb file.
 #[derive(Debug, Args)]

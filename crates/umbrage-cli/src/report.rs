@@ -173,6 +173,34 @@ pub(crate) struct LightsByPath {
     pub(crate) skipped: u64,
 }
 
+/// `volumes`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct VolumesReport {
+    pub(crate) scene: String,
+    pub(crate) lights: u64,
+    /// Of `parallel_ms_total`; the methods are timed on one.
+    pub(crate) threads: u64,
+    /// Candidates of all lights.
+    pub(crate) subset_triangles: u64,
+    /// The library's own build of all lights on all threads.
+    pub(crate) parallel_ms_total: f64,
+    pub(crate) methods: Vec<VolumesMethod>,
+}
+
+/// One method over all lights: query, facing and quads.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct VolumesMethod {
+    pub(crate) name: String,
+    pub(crate) ms_total: f64,
+    pub(crate) ns_per_triangle: f64,
+    pub(crate) quads: u64,
+    /// Light and dark caps, if drawn.
+    pub(crate) cap_triangles: u64,
+    /// Quads and cap triangles.
+    pub(crate) polygons: u64,
+    pub(crate) adjacency_bytes_per_triangle: f64,
+}
+
 /// `gen`.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct GenReport {
@@ -226,6 +254,15 @@ mod tests {
             keys(&CheckReport::default()),
             "scene method adapter size pixels lights samples wrong ambiguous tolerance_px \
              tolerance_depth closed worst lights_by_path",
+        );
+        has(
+            keys(&VolumesReport::default()),
+            "scene lights threads subset_triangles methods",
+        );
+        has(
+            keys(&VolumesMethod::default()),
+            "name ms_total ns_per_triangle quads cap_triangles polygons \
+             adjacency_bytes_per_triangle",
         );
         has(keys(&WorstPixel::default()), "x y light");
         has(keys(&LightsByPath::default()), "zpass zfail skipped");

@@ -328,5 +328,4 @@ mod tests {
         let refused = "stencil".parse::<Method>().unwrap_err();
         assert!(refused.contains("counter-zfail"), "{refused}");
     }
-
 }

@@ -7,6 +7,7 @@
 #![deny(unsafe_code)]
 
 pub mod frame;
+mod lanes64;
 pub mod light;
 pub mod mesh;
 pub mod volume;

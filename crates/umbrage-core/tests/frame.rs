@@ -50,7 +50,9 @@ fn eye_counts_are_the_casters_on_the_segment() {
             VolumeBuilder::default().build(&world, &[light], |_| true, &mut volumes);
             let chain: Vec<u32> = volumes.chain_triangles(0).map(|t| t.triangle()).collect();
             let (from, to) = (light.position.as_dvec3(), eye.as_dvec3());
-            let Some(expected) = plain_count(&world, &chain, from, to) else { continue };
+            let Some(expected) = plain_count(&world, &chain, from, to) else {
+                continue;
+            };
             match eye_count(&world, &light, volumes.quads_of(0), eye) {
                 EyeCount::Exact(found) => assert_eq!(found, expected, "seed {seed}"),
                 EyeCount::Ambiguous => continue,
@@ -58,19 +60,37 @@ fn eye_counts_are_the_casters_on_the_segment() {
             counted[expected.min(5) as usize] += 1;
         }
     }
-    assert!(counted.iter().all(|&n| n > 0), "every count from 0 to 5 must occur: {counted:?}");
+    assert!(
+        counted.iter().all(|&n| n > 0),
+        "every count from 0 to 5 must occur: {counted:?}"
+    );
 }
 
 /// Straight through vertices and edges inside a patch of casters: always exactly one.
 #[test]
 fn a_segment_through_an_interior_vertex_or_edge_counts_one_caster() {
     let world = World::build(&grid(4)).unwrap();
-    for (x, z) in [(0.0, 0.0), (1.0, -1.0), (0.5, 0.0), (0.5, 0.5), (2.0, 0.25), (0.3, 0.3)] {
+    for (x, z) in [
+        (0.0, 0.0),
+        (1.0, -1.0),
+        (0.5, 0.0),
+        (0.5, 0.5),
+        (2.0, 0.25),
+        (0.3, 0.3),
+    ] {
         let light = point_light(Vec3::new(x, 2.0, z), 50.0);
         let straight = Vec3::new(x, -3.0, z);
-        assert_eq!(count(&world, &light, straight), EyeCount::Exact(1), "{x} {z}");
+        assert_eq!(
+            count(&world, &light, straight),
+            EyeCount::Exact(1),
+            "{x} {z}"
+        );
         let down = sun(Vec3::NEG_Y);
-        assert_eq!(count(&world, &down, straight), EyeCount::Exact(1), "{x} {z}");
+        assert_eq!(
+            count(&world, &down, straight),
+            EyeCount::Exact(1),
+            "{x} {z}"
+        );
         let same_side = Vec3::new(-x, 3.0, z);
         assert_eq!(count(&world, &light, same_side), EyeCount::Exact(0));
         let outside = Vec3::new(40.0, -3.0, 0.0);
@@ -92,7 +112,10 @@ fn an_eye_on_a_side_is_ambiguous() {
         assert_eq!(count(&world, &light, on_side + clear), EyeCount::Exact(0));
     }
     // On a caster.
-    assert_eq!(count(&world, &light, Vec3::new(0.3, 0.0, 0.1)), EyeCount::Ambiguous);
+    assert_eq!(
+        count(&world, &light, Vec3::new(0.3, 0.0, 0.1)),
+        EyeCount::Ambiguous
+    );
 }
 
 #[test]
@@ -100,7 +123,13 @@ fn a_light_rectangle_holds_every_pixel_the_range_can_touch() {
     let mut r = Random(5);
     let mut empty = 0;
     for _ in 0..4000 {
-        let view = View::look_at(r.point(), r.point(), 1.0 + 0.5 * r.signed(), 0.01, [160, 90]);
+        let view = View::look_at(
+            r.point(),
+            r.point(),
+            1.0 + 0.5 * r.signed(),
+            0.01,
+            [160, 90],
+        );
         let light = point_light(4.0 * r.point(), 1.0 + r.signed());
         let rect = light_rect(&view, &light);
         empty += u32::from(rect.is_empty());
@@ -134,7 +163,11 @@ fn a_plan_says_why_a_light_is_not_drawn_and_takes_caps_only_where_needed() {
     let (mut volumes, mut plan) = (Volumes::default(), FramePlan::default());
     VolumeBuilder::default().build(&world, &lights, |_| true, &mut volumes);
     plan.make(&world, &lights, &volumes, &view, &PlanOptions::default());
-    let words: Vec<_> = plan.lights.iter().map(|l| (l.path.name(), l.path.reason())).collect();
+    let words: Vec<_> = plan
+        .lights
+        .iter()
+        .map(|l| (l.path.name(), l.path.reason()))
+        .collect();
     assert_eq!(words[0], ("zpass", ""));
     assert_eq!(words[1], ("skipped", "its range is outside the view"));
     assert_eq!(words[2], ("skipped", "no triangle is in its range"));
@@ -144,5 +177,8 @@ fn a_plan_says_why_a_light_is_not_drawn_and_takes_caps_only_where_needed() {
     zfail.path = umbrage_core::frame::PathRule::ZFailAlways;
     plan.make(&world, &lights, &volumes, &view, &zfail);
     assert!(matches!(plan.lights[0].path, LightPath::ZFail(_)));
-    assert_eq!(plan.cap_triangles(0), 2 * volumes.chain_triangles(0).count());
+    assert_eq!(
+        plan.cap_triangles(0),
+        2 * volumes.chain_triangles(0).count()
+    );
 }

@@ -26,8 +26,14 @@ fn random_soups_keep_every_invariant() {
         let world = World::build(&soup).unwrap();
         world.validate().unwrap();
         let report = &world.report;
-        assert_eq!(report.triangles + report.degenerate_triangles, soup.triangles.len());
-        assert_eq!(report.edges_by_triangles.iter().sum::<usize>(), report.unique_edges);
+        assert_eq!(
+            report.triangles + report.degenerate_triangles,
+            soup.triangles.len()
+        );
+        assert_eq!(
+            report.edges_by_triangles.iter().sum::<usize>(),
+            report.unique_edges
+        );
         for (t, &source) in world.source.iter().enumerate() {
             assert_eq!(world.corners(t as u32), soup.corners(source as usize));
             assert_eq!(world.casting[t], soup.casting[source as usize]);
@@ -39,20 +45,33 @@ fn random_soups_keep_every_invariant() {
 fn a_grid_has_the_edges_that_euler_says() {
     let world = World::build(&grid(5)).unwrap();
     let report = &world.report;
-    assert_eq!((report.vertices, report.welded_vertices, report.triangles), (400, 121, 200));
+    assert_eq!(
+        (report.vertices, report.welded_vertices, report.triangles),
+        (400, 121, 200)
+    );
     // Vertices - edges + triangles = 1 for a disc.
     assert_eq!(report.unique_edges, 121 + 200 - 1);
     assert_eq!(report.edges_by_triangles, [40, 280, 0, 0]);
-    assert_eq!((report.opposite_wound_pairs, report.duplicate_triangles), (0, 0));
+    assert_eq!(
+        (report.opposite_wound_pairs, report.duplicate_triangles),
+        (0, 0)
+    );
 }
 
 #[test]
 fn a_book_of_five_pages_is_one_edge_with_five_triangles() {
     let spine = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let pages = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 1.0]];
+    let pages = [
+        [1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 0.0, -1.0],
+        [1.0, 0.0, 1.0],
+    ];
     let positions: Vec<_> = spine.into_iter().chain(pages).collect();
-    let triangles: Vec<[u32; 3]> =
-        (2..7).map(|v| if v % 2 == 0 { [0, 1, v] } else { [1, 0, v] }).collect();
+    let triangles: Vec<[u32; 3]> = (2..7)
+        .map(|v| if v % 2 == 0 { [0, 1, v] } else { [1, 0, v] })
+        .collect();
     let report = World::build(&mesh(&positions, &triangles)).unwrap().report;
     assert_eq!(report.edges_by_triangles, [10, 0, 0, 1]);
 }
@@ -61,7 +80,13 @@ fn a_book_of_five_pages_is_one_edge_with_five_triangles() {
 fn minus_zero_welds_with_zero_and_nothing_else_does() {
     let next = f32::from_bits(1);
     let soup = mesh(
-        &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.0, 0.0, -0.0], [next, 0.0, 0.0]],
+        &[
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [-0.0, 0.0, -0.0],
+            [next, 0.0, 0.0],
+        ],
         &[[0, 1, 2], [3, 2, 1], [4, 1, 2]],
     );
     let report = World::build(&soup).unwrap().report;
@@ -94,17 +119,27 @@ fn bad_input_is_named() {
     short.casting.clear();
     assert_eq!(
         World::build(&short).unwrap_err(),
-        WorldError::CastingLength { casting: 0, triangles: 1 }
+        WorldError::CastingLength {
+            casting: 0,
+            triangles: 1
+        }
     );
     let mut beyond = good.clone();
     beyond.triangles[0][1] = 3;
     assert_eq!(
         World::build(&beyond).unwrap_err(),
-        WorldError::IndexOutOfRange { triangle: 0, vertex: 3, vertices: 3 }
+        WorldError::IndexOutOfRange {
+            triangle: 0,
+            vertex: 3,
+            vertices: 3
+        }
     );
     let mut nan = good;
     nan.positions[2].y = f32::NAN;
-    assert_eq!(World::build(&nan).unwrap_err(), WorldError::NotFinite { vertex: 2 });
+    assert_eq!(
+        World::build(&nan).unwrap_err(),
+        WorldError::NotFinite { vertex: 2 }
+    );
 }
 
 /// Each validator has something that turns it red.
@@ -116,13 +151,20 @@ fn validators_see_each_broken_invariant() {
         damage(&mut world);
         world.validate().unwrap_err()
     };
-    assert!(matches!(broken(&|w| w.casting.truncate(1)), WorldFault::Length { .. }));
+    assert!(matches!(
+        broken(&|w| w.casting.truncate(1)),
+        WorldFault::Length { .. }
+    ));
     assert!(matches!(
         broken(&|w| {
             let u = &mut w.edges.sides[0][1][3];
             *u = EdgeUse::new(u.edge(), u.sign() > 0);
         }),
-        WorldFault::EdgeUse { triangle: 3, side: 1, .. }
+        WorldFault::EdgeUse {
+            triangle: 3,
+            side: 1,
+            ..
+        }
     ));
     assert!(matches!(
         broken(&|w| {
@@ -137,11 +179,17 @@ fn validators_see_each_broken_invariant() {
     ));
     assert!(matches!(
         broken(&|w| w.clusters[0].sides[2].paired ^= 4),
-        WorldFault::Cluster { triangle: 2, side: 2 }
+        WorldFault::Cluster {
+            triangle: 2,
+            side: 2
+        }
     ));
     assert!(matches!(
         broken(&|w| w.bvh.nodes[0].max.x -= 1.0),
         WorldFault::OutsideBox { node: 0, .. }
     ));
-    assert!(matches!(broken(&|w| w.bvh.nodes[0].count -= 1), WorldFault::Range { .. }));
+    assert!(matches!(
+        broken(&|w| w.bvh.nodes[0].count -= 1),
+        WorldFault::Range { .. }
+    ));
 }

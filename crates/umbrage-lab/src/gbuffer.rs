@@ -37,7 +37,11 @@ impl Targets {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let [width, height] = size;
         if width == 0 || height == 0 || width > limit || height > limit {
-            return Err(GpuError::SizeTooLarge { width, height, limit });
+            return Err(GpuError::SizeTooLarge {
+                width,
+                height,
+                limit,
+            });
         }
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         Ok(Self {
@@ -60,7 +64,11 @@ pub fn texture(
 ) -> Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -88,8 +96,9 @@ pub struct GBufferPass {
 impl GBufferPass {
     /// Uploads what shading needs; positions are the shadow renderer's.
     pub fn new(gpu: &Gpu, stage: &Stage, shadows: &ShadowRenderer) -> Result<Self, GpuError> {
-        let (positions, triangles) =
-            shadows.world_buffers().ok_or(umbrage::RenderError::NoWorld)?;
+        let (positions, triangles) = shadows
+            .world_buffers()
+            .ok_or(umbrage::RenderError::NoWorld)?;
         let world = &stage.world;
         let soup = &stage.soup;
         let device = &gpu.device;
@@ -102,21 +111,36 @@ impl GBufferPass {
                     limit,
                 });
             }
-            Ok(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(label),
-                contents: if bytes.is_empty() { &[0; 32] } else { bytes },
-                usage: wgpu::BufferUsages::STORAGE,
-            }))
+            Ok(
+                device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                    label: Some(label),
+                    contents: if bytes.is_empty() { &[0; 32] } else { bytes },
+                    usage: wgpu::BufferUsages::STORAGE,
+                }),
+            )
         };
         let of_source = |t: &u32| *t as usize;
-        let material: Vec<u32> = world.source.iter().map(|t| soup.material[of_source(t)]).collect();
+        let material: Vec<u32> = world
+            .source
+            .iter()
+            .map(|t| soup.material[of_source(t)])
+            .collect();
         let mut normals = vec![0u32];
         if !soup.normals.is_empty() {
-            normals = world.source.iter().flat_map(|t| soup.normals[of_source(t)]).map(pack).collect();
+            normals = world
+                .source
+                .iter()
+                .flat_map(|t| soup.normals[of_source(t)])
+                .map(pack)
+                .collect();
         }
         let mut uvs = vec![glam::Vec2::ZERO];
         if !soup.uvs.is_empty() {
-            uvs = world.source.iter().flat_map(|t| soup.uvs[of_source(t)]).collect();
+            uvs = world
+                .source
+                .iter()
+                .flat_map(|t| soup.uvs[of_source(t)])
+                .collect();
         }
         let materials: Vec<[[f32; 4]; 2]> = stage
             .scene
@@ -134,7 +158,10 @@ impl GBufferPass {
         let image_of = |t: usize| stage.scene.materials[material[t] as usize].base_color_image;
         let mut order: Vec<u32> = (0..world.triangles.len() as u32).collect();
         order.sort_by_key(|&t| image_of(t as usize));
-        let corner_ids: Vec<u32> = order.iter().flat_map(|&t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let corner_ids: Vec<u32> = order
+            .iter()
+            .flat_map(|&t| [3 * t, 3 * t + 1, 3 * t + 2])
+            .collect();
 
         let pipeline = pipeline(gpu);
         let buffers = [shadows.view_buffer(), positions, triangles]
@@ -164,7 +191,11 @@ impl GBufferPass {
             bind_group,
             corners: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("corners"),
-                contents: bytemuck::cast_slice(if corner_ids.is_empty() { &[0] } else { &corner_ids }),
+                contents: bytemuck::cast_slice(if corner_ids.is_empty() {
+                    &[0]
+                } else {
+                    &corner_ids
+                }),
                 usage: wgpu::BufferUsages::INDEX,
             }),
             batches,
@@ -274,7 +305,11 @@ fn image_bind_group(
         &gpu.queue,
         &wgpu::TextureDescriptor {
             label: Some("base colour"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,

@@ -108,11 +108,16 @@ impl Gpu {
             .find(|a| match choice {
                 AdapterChoice::Auto => true,
                 AdapterChoice::Cpu => a.get_info().device_type == wgpu::DeviceType::Cpu,
-                AdapterChoice::Name(name) => {
-                    a.get_info().name.to_lowercase().contains(&name.to_lowercase())
-                }
+                AdapterChoice::Name(name) => a
+                    .get_info()
+                    .name
+                    .to_lowercase()
+                    .contains(&name.to_lowercase()),
             })
-            .ok_or_else(|| GpuError::NoAdapter { choice: choice.clone(), found: names })?;
+            .ok_or_else(|| GpuError::NoAdapter {
+                choice: choice.clone(),
+                found: names,
+            })?;
         let info = adapter.get_info();
         let wanted = wgpu::Features::DEPTH_CLIP_CONTROL
             | wgpu::Features::DEPTH32FLOAT_STENCIL8
@@ -124,7 +129,10 @@ impl Gpu {
             required_limits: adapter.limits(),
             ..wgpu::DeviceDescriptor::default()
         }))
-        .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), message: e.to_string() })?;
+        .map_err(|e| GpuError::NoDevice {
+            adapter: info.name.clone(),
+            message: e.to_string(),
+        })?;
         let timestamp_ns = features
             .contains(wgpu::Features::TIMESTAMP_QUERY)
             .then(|| queue.get_timestamp_period());

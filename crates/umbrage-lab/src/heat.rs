@@ -44,7 +44,10 @@ impl Lab {
         };
         for &(volume, draw) in draws {
             let counts = self.counts(stage, lights, view, volume, draw)?;
-            total.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+            total
+                .iter_mut()
+                .zip(counts)
+                .for_each(|(sum, count)| *sum += count);
         }
         if heat == Heat::Layers {
             add_eye_counts(&self.plan, &mut total, view.size[0] as usize);
@@ -77,11 +80,20 @@ impl Lab {
         let light = LightPass::new(gpu, &shadows, draw);
         let binding = light.bind(gpu, &shadows, lights, &targets);
         let plain: Vec<Light> = lights.iter().map(|l| l.light).collect();
-        shadows.prepare(&gpu.device, &gpu.queue, view, &plain, &self.volumes, &self.plan)?;
+        shadows.prepare(
+            &gpu.device,
+            &gpu.queue,
+            view,
+            &plain,
+            &self.volumes,
+            &self.plan,
+        )?;
         let sums = texture(gpu, "counts", view.size, HDR, wgpu::TextureUsages::COPY_SRC);
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-            label: Some("counts"),
-        });
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                label: Some("counts"),
+            });
         surface.record(&mut encoder, &targets, None);
         {
             let mut pass = light_pass(&mut encoder, &targets, &sums, None);
@@ -91,18 +103,25 @@ impl Lab {
         }
         gpu.queue.submit([encoder.finish()]);
         let first = |t: &[u8]| f16::from_le_bytes([t[0], t[1]]).to_f32();
-        Ok(read_texture(gpu, &sums)?.chunks_exact(8).map(first).collect())
+        Ok(read_texture(gpu, &sums)?
+            .chunks_exact(8)
+            .map(first)
+            .collect())
     }
 }
 
 /// Sides crossed plus the eye count are the layers at the surface.
 fn add_eye_counts(plan: &FramePlan, total: &mut [f32], width: usize) {
     for (_, light) in plan.drawn() {
-        let LightPath::ZPass { eye_count } = light.path else { continue };
+        let LightPath::ZPass { eye_count } = light.path else {
+            continue;
+        };
         let s = light.scissor;
         for y in s.y..s.y + s.height {
             let row = y as usize * width + s.x as usize;
-            total[row..row + s.width as usize].iter_mut().for_each(|t| *t += eye_count as f32);
+            total[row..row + s.width as usize]
+                .iter_mut()
+                .for_each(|t| *t += eye_count as f32);
         }
     }
 }
@@ -127,7 +146,9 @@ pub fn false_colours(counts: &[f32]) -> Vec<u8> {
             let at = (count / top).clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;
             let low = (at as usize).min(STOPS.len() - 2);
             let [a, b] = [STOPS[low], STOPS[low + 1]].map(glam::Vec3::from);
-            (a.lerp(b, at - low as f32) * 255.0).to_array().map(|c| c as u8)
+            (a.lerp(b, at - low as f32) * 255.0)
+                .to_array()
+                .map(|c| c as u8)
         })
         .collect()
 }

@@ -39,7 +39,10 @@ impl Method {
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, m)| *m == self).map_or("", |(name, _)| name)
+        Self::ALL
+            .iter()
+            .find(|(_, m)| *m == self)
+            .map_or("", |(name, _)| name)
     }
 
     /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure.
@@ -119,7 +122,8 @@ impl Lab {
             self.volumes = Volumes::empty(self.lights.len());
         } else {
             let in_view = |light: &Light| !light_rect(view, light).is_empty();
-            self.builder.build(&stage.world, &self.lights, in_view, &mut self.volumes);
+            self.builder
+                .build(&stage.world, &self.lights, in_view, &mut self.volumes);
         }
         self.times.volumes = ms_since(start);
         let start = Instant::now();
@@ -130,7 +134,8 @@ impl Lab {
         if method == Method::None {
             self.plan.unshadowed(&self.lights, view);
         } else {
-            self.plan.make(&stage.world, &self.lights, &self.volumes, view, &options);
+            self.plan
+                .make(&stage.world, &self.lights, &self.volumes, view, &options);
         }
         self.times.plan = ms_since(start);
     }
@@ -150,7 +155,12 @@ impl Lab {
         shadows.upload_world(&self.gpu.device, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
         let light = LightPass::new(&self.gpu, &shadows, draw);
-        Ok(Run { targets, shadows, surface, light })
+        Ok(Run {
+            targets,
+            shadows,
+            surface,
+            light,
+        })
     }
 
     /// Renders `repeat` frames (and one to warm up) from scratch, volumes included, and gives the
@@ -181,7 +191,9 @@ impl Lab {
         let mut run = self.run(stage, view, draw)?;
         let hdr_usage = wgpu::TextureUsages::COPY_SRC;
         let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
-        let binding = run.light.bind(&self.gpu, &run.shadows, lights, &run.targets);
+        let binding = run
+            .light
+            .bind(&self.gpu, &run.shadows, lights, &run.targets);
         let timer = Timer::new(&self.gpu);
         let mut all = Vec::new();
         for _ in 0..=repeat {
@@ -198,16 +210,24 @@ impl Lab {
             )?;
             self.times.upload = ms_since(upload);
             let record = Instant::now();
-            let mut encoder = self.gpu.device.create_command_encoder(
-                &wgpu::CommandEncoderDescriptor { label: Some("frame") },
+            let mut encoder =
+                self.gpu
+                    .device
+                    .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                        label: Some("frame"),
+                    });
+            run.surface.record(
+                &mut encoder,
+                &run.targets,
+                timer.as_ref().map(|t| t.writes(0)),
             );
-            run.surface.record(&mut encoder, &run.targets, timer.as_ref().map(|t| t.writes(0)));
             {
                 let writes = timer.as_ref().map(|t| t.writes(2));
                 let mut pass = light_pass(&mut encoder, &run.targets, &hdr, writes);
-                run.shadows.record(&mut pass, &self.plan, 0..usize::MAX, |pass, number, _| {
-                    run.light.draw(pass, &binding, number);
-                });
+                run.shadows
+                    .record(&mut pass, &self.plan, 0..usize::MAX, |pass, number, _| {
+                        run.light.draw(pass, &binding, number);
+                    });
             }
             if let Some(timer) = &timer {
                 timer.resolve(&mut encoder);
@@ -255,7 +275,9 @@ impl Lab {
         view: &View,
     ) -> Result<Mask, GpuError> {
         let mut run = self.run(stage, view, LightDraw::Mark)?;
-        let binding = run.light.bind(&self.gpu, &run.shadows, lights, &run.targets);
+        let binding = run
+            .light
+            .bind(&self.gpu, &run.shadows, lights, &run.targets);
         run.shadows.prepare(
             &self.gpu.device,
             &self.gpu.queue,
@@ -265,31 +287,57 @@ impl Lab {
             &self.plan,
         )?;
         let usage = wgpu::TextureUsages::COPY_SRC;
-        let layer = texture(&self.gpu, "mask", view.size, LightDraw::Mark.format(), usage);
+        let layer = texture(
+            &self.gpu,
+            "mask",
+            view.size,
+            LightDraw::Mark.format(),
+            usage,
+        );
         let mut words = Vec::new();
         for first in (0..lights.len()).step_by(32) {
-            let mut encoder = self.gpu.device.create_command_encoder(
-                &wgpu::CommandEncoderDescriptor { label: Some("mask") },
-            );
+            let mut encoder =
+                self.gpu
+                    .device
+                    .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                        label: Some("mask"),
+                    });
             if first == 0 {
                 run.surface.record(&mut encoder, &run.targets, None);
             }
             {
                 let mut pass = light_pass(&mut encoder, &run.targets, &layer, None);
-                run.shadows.record(&mut pass, &self.plan, first..first + 32, |pass, number, _| {
-                    run.light.draw(pass, &binding, number);
-                });
+                run.shadows.record(
+                    &mut pass,
+                    &self.plan,
+                    first..first + 32,
+                    |pass, number, _| {
+                        run.light.draw(pass, &binding, number);
+                    },
+                );
             }
             self.gpu.queue.submit([encoder.finish()]);
             let bytes = read_texture(&self.gpu, &layer)?;
-            words.extend(bytes.chunks_exact(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
+            words.extend(
+                bytes
+                    .chunks_exact(4)
+                    .map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])),
+            );
         }
-        Ok(Mask { size: view.size, lights: lights.len() as u32, words })
+        Ok(Mask {
+            size: view.size,
+            lights: lights.len() as u32,
+            words,
+        })
     }
 
     /// What happens to surfaces before the near plane on this device.
     pub fn near_clip(&self) -> NearClip {
-        if self.gpu.depth_clamp { NearClip::Clamped } else { NearClip::Clipped }
+        if self.gpu.depth_clamp {
+            NearClip::Clamped
+        } else {
+            NearClip::Clipped
+        }
     }
 
     /// Lights drawn by each path: z-pass, z-fail, skipped.

@@ -34,7 +34,10 @@ impl From<&StageLight> for LightUniform {
     fn from(l: &StageLight) -> Self {
         let (kind, direction, cos_outer) = match l.light.shape {
             LightShape::Point => (0, glam::Vec3::ZERO, -1.0),
-            LightShape::Spot { direction, cos_outer } => (1, direction, cos_outer),
+            LightShape::Spot {
+                direction,
+                cos_outer,
+            } => (1, direction, cos_outer),
             LightShape::Directional { direction } => (2, direction, -1.0),
         };
         Self {
@@ -86,10 +89,12 @@ impl LightPass {
     /// Compiles it for the stencil that `shadows` leaves.
     pub fn new(gpu: &Gpu, shadows: &ShadowRenderer, draw: LightDraw) -> Self {
         let source = format!("{CLIP_WGSL}\n{}", include_str!("shaders/light.wgsl"));
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("light"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
-        });
+        let module = gpu
+            .device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("light"),
+                source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
+            });
         let add = wgpu::BlendComponent {
             src_factor: wgpu::BlendFactor::One,
             dst_factor: wgpu::BlendFactor::One,
@@ -97,48 +102,58 @@ impl LightPass {
         };
         let mut depth_stencil = shadows.light_depth_stencil();
         if draw == LightDraw::Reach || draw == LightDraw::One {
-            for face in [&mut depth_stencil.stencil.front, &mut depth_stencil.stencil.back] {
+            for face in [
+                &mut depth_stencil.stencil.front,
+                &mut depth_stencil.stencil.back,
+            ] {
                 face.compare = wgpu::CompareFunction::Always;
             }
         }
         let layout = bind_group_layout(gpu);
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("light"),
-            layout: Some(&gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("light"),
-                bind_group_layouts: &[Some(&layout)],
-                immediate_size: 0,
-            })),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(depth_stencil),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(match draw {
-                    LightDraw::Shade => "shade",
-                    LightDraw::Mark => "mark",
-                    LightDraw::Reach => "reach",
-                    LightDraw::One | LightDraw::Nothing => "one",
-                }),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: draw.format(),
-                    blend: Some(wgpu::BlendState { color: add, alpha: add }),
-                    write_mask: match draw {
-                        LightDraw::Nothing => wgpu::ColorWrites::empty(),
-                        _ => wgpu::ColorWrites::ALL,
+        let pipeline =
+            gpu.device
+                .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                    label: Some("light"),
+                    layout: Some(&gpu.device.create_pipeline_layout(
+                        &wgpu::PipelineLayoutDescriptor {
+                            label: Some("light"),
+                            bind_group_layouts: &[Some(&layout)],
+                            immediate_size: 0,
+                        },
+                    )),
+                    vertex: wgpu::VertexState {
+                        module: &module,
+                        entry_point: Some("vertex"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        buffers: &[],
                     },
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+                    primitive: wgpu::PrimitiveState::default(),
+                    depth_stencil: Some(depth_stencil),
+                    multisample: wgpu::MultisampleState::default(),
+                    fragment: Some(wgpu::FragmentState {
+                        module: &module,
+                        entry_point: Some(match draw {
+                            LightDraw::Shade => "shade",
+                            LightDraw::Mark => "mark",
+                            LightDraw::Reach => "reach",
+                            LightDraw::One | LightDraw::Nothing => "one",
+                        }),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        targets: &[Some(wgpu::ColorTargetState {
+                            format: draw.format(),
+                            blend: Some(wgpu::BlendState {
+                                color: add,
+                                alpha: add,
+                            }),
+                            write_mask: match draw {
+                                LightDraw::Nothing => wgpu::ColorWrites::empty(),
+                                _ => wgpu::ColorWrites::ALL,
+                            },
+                        })],
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                });
         Self { pipeline, layout }
     }
 
@@ -154,11 +169,13 @@ impl LightPass {
         if uniforms.is_empty() {
             uniforms.push(LightUniform::zeroed());
         }
-        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("lights"),
-            contents: bytemuck::cast_slice(&uniforms),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
+        let buffer = gpu
+            .device
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("lights"),
+                contents: bytemuck::cast_slice(&uniforms),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
         let views = [&targets.albedo, &targets.normal, &targets.distance].map(whole);
         let buffers = [shadows.view_buffer(), &buffer];
         let resources = buffers
@@ -216,8 +233,9 @@ fn bind_group_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
             count: None,
         })
         .collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("light"),
-        entries: &entries,
-    })
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("light"),
+            entries: &entries,
+        })
 }

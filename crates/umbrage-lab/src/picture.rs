@@ -1,11 +1,11 @@
 //! Light to picture: exposure, tone mapping, PNG.
 
-use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use thiserror::Error;
+use umbrage_scene::write::whole;
 
 /// A lit frame on the CPU.
 #[derive(Clone, Debug)]
@@ -56,8 +56,14 @@ impl Lit {
             .flat_map(|((light, albedo), distance)| {
                 let base = Vec3::from(albedo.map(|c| (f32::from(c) / 255.0).powf(2.2)));
                 let sky = Vec3::new(0.004, 0.006, 0.011);
-                let color = if *distance > 0.0 { *light * exposure + base * AMBIENT } else { sky };
-                filmic(color).to_array().map(|c| (srgb(c) * 255.0 + 0.5) as u8)
+                let color = if *distance > 0.0 {
+                    *light * exposure + base * AMBIENT
+                } else {
+                    sky
+                };
+                filmic(color)
+                    .to_array()
+                    .map(|c| (srgb(c) * 255.0 + 0.5) as u8)
             })
             .collect()
     }
@@ -77,18 +83,27 @@ fn filmic(color: Vec3) -> Vec3 {
     let over = scaled.max_element() - 1.0;
     if over > 0.0 {
         let fade = over / (scaled.max_element() - mapped).max(1e-6);
-        return scaled.lerp(Vec3::splat(mapped), fade).clamp(Vec3::ZERO, Vec3::ONE);
+        return scaled
+            .lerp(Vec3::splat(mapped), fade)
+            .clamp(Vec3::ZERO, Vec3::ONE);
     }
     scaled
 }
 
 fn srgb(c: f32) -> f32 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    if c <= 0.003_130_8 {
+        12.92 * c
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    }
 }
 
-/// Writes 8-bit RGB rows as PNG, to a temporary file beside `path` that is then renamed.
+/// Writes 8-bit RGB rows as PNG, whole or not at all.
 pub fn write_png(path: &Path, [width, height]: [u32; 2], rgb8: &[u8]) -> Result<(), PictureError> {
-    let fail = |message: String| PictureError { path: path.into(), message };
+    let fail = |message: String| PictureError {
+        path: path.into(),
+        message,
+    };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -97,16 +112,5 @@ pub fn write_png(path: &Path, [width, height]: [u32; 2], rgb8: &[u8]) -> Result<
         .write_header()
         .and_then(|mut writer| writer.write_image_data(rgb8))
         .map_err(|e| fail(e.to_string()))?;
-    let temporary = path.with_extension("png.partial");
-    let write = || -> std::io::Result<()> {
-        let mut file = fs::File::create(&temporary)?;
-        file.write_all(&bytes)?;
-        file.sync_all()?;
-        fs::rename(&temporary, path)
-    };
-    write().map_err(|e| {
-        // Nothing half-written stays behind; the write's own error is the one to report.
-        let _ = fs::remove_file(&temporary);
-        fail(e.to_string())
-    })
+    whole(path, |file| file.write_all(&bytes)).map_err(|e| fail(e.to_string()))
 }

@@ -14,9 +14,11 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuEr
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-        label: Some("readback"),
-    });
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("readback"),
+        });
     encoder.copy_texture_to_buffer(
         texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
@@ -54,7 +56,10 @@ pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError
         .recv()
         .map_err(|e| lost(e.to_string()))?
         .map_err(|e| lost(e.to_string()))?;
-    let bytes = slice.get_mapped_range().map_err(|e| lost(e.to_string()))?.to_vec();
+    let bytes = slice
+        .get_mapped_range()
+        .map_err(|e| lost(e.to_string()))?
+        .to_vec();
     buffer.unmap();
     Ok(bytes)
 }

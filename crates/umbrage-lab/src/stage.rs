@@ -82,11 +82,7 @@ const DARK: f32 = 0.01;
 impl Stage {
     /// Flattens the scene and builds its world, with positions relative to `origin` or to the
     /// soup's own.
-    pub fn new(
-        scene: Scene,
-        casters: Casters,
-        origin: Option<DVec3>,
-    ) -> Result<Self, StageError> {
+    pub fn new(scene: Scene, casters: Casters, origin: Option<DVec3>) -> Result<Self, StageError> {
         let mut soup = scene.soup_at(origin)?;
         drop_blended(&scene, &mut soup);
         let casting = soup
@@ -107,9 +103,16 @@ impl Stage {
             triangles: soup.triangles.clone(),
             casting,
         };
-        let world = World::build(&mesh)
-            .map_err(|error| StageError::World { scene: scene.name.clone(), error })?;
-        Ok(Self { scene, soup, mesh, world })
+        let world = World::build(&mesh).map_err(|error| StageError::World {
+            scene: scene.name.clone(),
+            error,
+        })?;
+        Ok(Self {
+            scene,
+            soup,
+            mesh,
+            world,
+        })
     }
 
     /// A world point relative to the world origin, rounded once.
@@ -120,7 +123,11 @@ impl Stage {
     /// The scene's own lights. `range_m` replaces every finite light's range; without it a light
     /// keeps the file's, or ends where it falls below a hundredth of a lux.
     pub fn lights(&self, range_m: Option<f32>) -> Vec<StageLight> {
-        self.scene.lights.iter().map(|light| self.light(light, range_m)).collect()
+        self.scene
+            .lights
+            .iter()
+            .map(|light| self.light(light, range_m))
+            .collect()
     }
 
     /// One light of the scene, or one that a caller made in the scene's terms.
@@ -130,9 +137,18 @@ impl Stage {
         let (shape, cos_inner) = match light.kind {
             LightKind::Point => (LightShape::Point, 1.0),
             LightKind::Directional => (LightShape::Directional { direction }, 1.0),
-            LightKind::Spot { inner_rad, outer_rad } => {
+            LightKind::Spot {
+                inner_rad,
+                outer_rad,
+            } => {
                 let cos_outer = outer_rad.cos();
-                (LightShape::Spot { direction, cos_outer }, inner_rad.cos().max(cos_outer))
+                (
+                    LightShape::Spot {
+                        direction,
+                        cos_outer,
+                    },
+                    inner_rad.cos().max(cos_outer),
+                )
             }
         };
         let auto = || (power.max_element() / DARK).sqrt().max(1e-3);

@@ -7,6 +7,7 @@
 
 mod binary;
 mod json;
+mod whole;
 
 use std::path::Path;
 
@@ -14,6 +15,8 @@ use serde_json::{Map, Value, json};
 
 use crate::{Scene, SceneError};
 use binary::Binary;
+
+pub use whole::whole;
 
 /// Writes `scene` to `path`, replacing what is there.
 ///

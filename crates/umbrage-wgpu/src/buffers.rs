@@ -13,18 +13,26 @@ pub(crate) fn storage(
 ) -> Result<Buffer, RenderError> {
     check_size(device, label, bytes.len() as u64)?;
     let contents = if bytes.is_empty() { &[0; 16] } else { bytes };
-    Ok(device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents,
-        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-    }))
+    Ok(
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(label),
+            contents,
+            usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+        }),
+    )
 }
 
 fn check_size(device: &Device, what: &'static str, needed: u64) -> Result<(), RenderError> {
     let limits = device.limits();
-    let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let limit = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size);
     if needed > limit {
-        return Err(RenderError::BufferTooLarge { what, needed, limit });
+        return Err(RenderError::BufferTooLarge {
+            what,
+            needed,
+            limit,
+        });
     }
     Ok(())
 }
@@ -56,7 +64,9 @@ impl Growing {
         let replaced = needed > self.buffer.size();
         if replaced {
             let limits = device.limits();
-            let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+            let limit = limits
+                .max_storage_buffer_binding_size
+                .min(limits.max_buffer_size);
             let size = (needed + needed / 2).next_multiple_of(256).min(limit & !3);
             self.buffer = Self::allocate(device, self.label, size);
         }

@@ -84,8 +84,20 @@ fn pipeline(
     };
     let (entry_point, visible) = match options.volume_color {
         VolumeColor::None => ("nothing", None),
-        VolumeColor::Fragments => ("one", Some(wgpu::BlendState { color: add, alpha: add })),
-        VolumeColor::Layers => ("layer", Some(wgpu::BlendState { color: add, alpha: add })),
+        VolumeColor::Fragments => (
+            "one",
+            Some(wgpu::BlendState {
+                color: add,
+                alpha: add,
+            }),
+        ),
+        VolumeColor::Layers => (
+            "layer",
+            Some(wgpu::BlendState {
+                color: add,
+                alpha: add,
+            }),
+        ),
     };
     let targets: Vec<_> = (0..)
         .zip(options.color_formats)
@@ -119,7 +131,12 @@ fn pipeline(
             format: options.depth_stencil_format,
             depth_write_enabled: Some(false),
             depth_compare: Some(CompareFunction::Greater),
-            stencil: StencilState { front, back, read_mask: 0xff, write_mask: 0xff },
+            stencil: StencilState {
+                front,
+                back,
+                read_mask: 0xff,
+                write_mask: 0xff,
+            },
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState {

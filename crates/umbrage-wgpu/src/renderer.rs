@@ -231,7 +231,11 @@ impl ShadowRenderer {
             pass.set_scissor_rect(s.x, s.y, s.width, s.height);
             let instance = number as u32..number as u32 + 1;
             let zpass = matches!(light.path, LightPath::ZPass { .. });
-            let sides = if zpass { &self.pipelines.zpass_sides } else { &self.pipelines.zfail_sides };
+            let sides = if zpass {
+                &self.pipelines.zpass_sides
+            } else {
+                &self.pipelines.zfail_sides
+            };
             for (range, pipeline) in [
                 (&light.quads, sides),
                 (&light.caps, &self.pipelines.zfail_caps),
@@ -281,7 +285,11 @@ fn bind_group_layout(device: &Device) -> BindGroupLayout {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: ShaderStages::VERTEX,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
         count: None,
     };
     let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform)];

@@ -58,7 +58,15 @@ fn render(demo: &Demo, folder: &Path) -> Result<(), Stop> {
         .with_extension(std::env::consts::EXE_EXTENSION);
     let mut render = Command::new(binary);
     render
-        .args(["render", scene, "--camera", demo.camera, "--size", "1920x1080", "-o"])
+        .args([
+            "render",
+            scene,
+            "--camera",
+            demo.camera,
+            "--size",
+            "1920x1080",
+            "-o",
+        ])
         .arg(&picture)
         .arg("--json")
         .arg(&figures)

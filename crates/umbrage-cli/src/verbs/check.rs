@@ -30,7 +30,11 @@ pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
 
 /// Draws the masks and compares them.
 fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
-    let Setting { stage, lights, view } = setting;
+    let Setting {
+        stage,
+        lights,
+        view,
+    } = setting;
     let run = &args.common.run;
     let method = run.method.0;
     let bar = Bar::new(args.common.results.quiet);
@@ -47,7 +51,9 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
     let options = JudgeOptions::default()
         .with_near(lab.near_clip())
         .with_skipped(lab.plan.lights.iter().map(skipped).collect());
-    let found = judge(&oracle, view, &plain, &mask, &options, &|done, _| bar.advance(done));
+    let found = judge(&oracle, view, &plain, &mask, &options, &|done, _| {
+        bar.advance(done)
+    });
     let [zpass, zfail, skipped] = lab.lights_by_path().map(|count| count as u64);
     let worst = found.worst.iter().map(|worst| WorstPixel {
         x: worst.x,
@@ -68,7 +74,11 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         tolerance_depth: found.tolerance_depth,
         closed: lab.volumes.check_closed(&stage.world).is_ok(),
         worst: worst.collect(),
-        lights_by_path: LightsByPath { zpass, zfail, skipped },
+        lights_by_path: LightsByPath {
+            zpass,
+            zfail,
+            skipped,
+        },
     })
 }
 

@@ -4,12 +4,11 @@ use umbrage_scene::{Progress, write};
 
 use crate::args::GenArgs;
 use crate::error::CliError;
-use crate::json;
 use crate::progress::Bar;
 use crate::report::GenReport;
 use crate::table::Table;
 
-/// Generates, writes beside the output and renames, so that the file is whole or not there.
+/// Generates and writes.
 pub(crate) fn run(args: &GenArgs) -> Result<(), CliError> {
     let extension = args
         .output
@@ -26,18 +25,11 @@ pub(crate) fn run(args: &GenArgs) -> Result<(), CliError> {
     let scene = umbrage_scene::open(&format!("gen:{name}"), &bar)?;
 
     bar.stage("write", 0);
-    let beside = json::beside(&args.output)?.with_extension("tmp.glb");
-    let written = write::glb(&scene, &beside)
-        .map_err(CliError::from)
-        .and_then(|()| {
-            let renamed =
-                std::fs::rename(&beside, &args.output).and_then(|()| args.output.metadata());
-            renamed.map_err(|error| CliError::file(&args.output, error))
-        });
-    let bytes = written.inspect_err(|_| {
-        // Nothing to do if it was never made; the first error is the one to tell.
-        let _ = std::fs::remove_file(&beside);
-    })?;
+    write::glb(&scene, &args.output)?;
+    let bytes = args
+        .output
+        .metadata()
+        .map_err(|error| CliError::file(&args.output, error))?;
     drop(bar);
 
     let report = GenReport {

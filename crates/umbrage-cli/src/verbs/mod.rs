@@ -5,3 +5,4 @@ pub(crate) mod check;
 pub(crate) mod generate;
 pub(crate) mod inspect;
 pub(crate) mod render;
+pub(crate) mod volumes;

@@ -27,7 +27,11 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), CliError> {
 
 /// Draws the frames and writes `--output` and `--mask-out`.
 fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> {
-    let Setting { stage, lights, view } = setting;
+    let Setting {
+        stage,
+        lights,
+        view,
+    } = setting;
     let run = &args.common.run;
     let bar = Bar::new(args.common.results.quiet);
     bar.stage("open adapter", 0);
@@ -60,7 +64,11 @@ fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> 
 }
 
 fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
-    let reports = setting.lights.iter().zip(&lab.volumes.lights).zip(&lab.plan.lights);
+    let reports = setting
+        .lights
+        .iter()
+        .zip(&lab.volumes.lights)
+        .zip(&lab.plan.lights);
     let lights: Vec<LightReport> = reports
         .enumerate()
         .map(|(number, ((light, volume), plan))| LightReport {
@@ -107,12 +115,20 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
 fn mask_rgb8(mask: &Mask, light: u32) -> Vec<u8> {
     let [width, height] = mask.size;
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    pixels.flat_map(|(x, y)| [if mask.get(x, y, light) { 255 } else { 0 }; 3]).collect()
+    pixels
+        .flat_map(|(x, y)| [if mask.get(x, y, light) { 255 } else { 0 }; 3])
+        .collect()
 }
 
 /// A light's name without what a file name cannot hold.
 fn file_name(name: &str) -> String {
-    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
     name.chars().take(64).map(plain).collect()
 }
 

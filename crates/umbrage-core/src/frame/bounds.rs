@@ -22,7 +22,12 @@ impl Rect {
     /// The whole view.
     pub fn full(view: &View) -> Self {
         let [width, height] = view.size;
-        Self { x: 0, y: 0, width, height }
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
     }
 
     /// Covers no pixel.

@@ -93,7 +93,11 @@ impl Segment {
         let extent = (max - min).length() + (eye - min).abs().max((eye - max).abs()).length();
         Self {
             eye,
-            light: if w == 0.0 { eye + toward * extent } else { toward },
+            light: if w == 0.0 {
+                eye + toward * extent
+            } else {
+                toward
+            },
             directional: w == 0.0,
             pad: 2.0 * SIDE_TOLERANCE * extent,
         }
@@ -111,7 +115,10 @@ impl Segment {
                 }
                 continue;
             }
-            let (a, b) = ((lo - self.light[axis]) / d[axis], (hi - self.light[axis]) / d[axis]);
+            let (a, b) = (
+                (lo - self.light[axis]) / d[axis],
+                (hi - self.light[axis]) / d[axis],
+            );
             near = near.max(a.min(b));
             far = far.min(a.max(b));
         }
@@ -157,7 +164,10 @@ impl Segment {
     /// Whether the eye is within tolerance of the triangle itself.
     fn eye_near_caster(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let tolerance = SIDE_TOLERANCE
-            * [a, b, c].into_iter().map(|p| (p - self.eye).length()).fold(0.0, f64::max);
+            * [a, b, c]
+                .into_iter()
+                .map(|p| (p - self.eye).length())
+                .fold(0.0, f64::max);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let height = (self.eye - a).dot(normal);
         let foot = self.eye - height * normal;
@@ -177,7 +187,11 @@ impl Segment {
 }
 
 fn coord(p: DVec3) -> Coord3D<f64> {
-    Coord3D { x: p.x, y: p.y, z: p.z }
+    Coord3D {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    }
 }
 
 /// Positive if `p` is on the side from which a, b, c run counter-clockwise; exact.
@@ -202,8 +216,12 @@ fn inside(light: DVec3, eye: DVec3, a: DVec3, b: DVec3) -> bool {
         };
         orient2d(at(light), at(b), at(a))
     };
-    [plane(|p| (p.y, p.z)), plane(|p| (p.z, p.x)), plane(|p| (p.x, p.y))]
-        .into_iter()
-        .find(|n| *n != 0.0)
-        .is_some_and(|n| n > 0.0)
+    [
+        plane(|p| (p.y, p.z)),
+        plane(|p| (p.z, p.x)),
+        plane(|p| (p.x, p.y)),
+    ]
+    .into_iter()
+    .find(|n| *n != 0.0)
+    .is_some_and(|n| n > 0.0)
 }

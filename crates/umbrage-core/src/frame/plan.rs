@@ -23,7 +23,9 @@ pub struct PlanOptions {
 
 impl Default for PlanOptions {
     fn default() -> Self {
-        Self { path: PathRule::ZPassWhereExact }
+        Self {
+            path: PathRule::ZPassWhereExact,
+        }
     }
 }
 
@@ -151,7 +153,8 @@ impl FramePlan {
             let [caps, reversed_caps] = [1, -1].map(|coefficient| {
                 let first = self.caps.len() as u32;
                 let triangles = chain.iter().flat_map(Chain::triangles);
-                self.caps.extend(triangles.filter(|t| t.coefficient() == coefficient));
+                self.caps
+                    .extend(triangles.filter(|t| t.coefficient() == coefficient));
                 first..self.caps.len() as u32
             });
             self.lights.push(LightPlan {

@@ -32,11 +32,24 @@ impl View {
     /// A view from `eye` towards `target`, +y up (or +z where the view is vertical).
     pub fn look_at(eye: Vec3, target: Vec3, fovy_rad: f32, near: f32, size: [u32; 2]) -> Self {
         let forward = (target - eye).normalize_or(Vec3::NEG_Z);
-        let up_hint = if forward.y.abs() > 0.999 { Vec3::Z } else { Vec3::Y };
+        let up_hint = if forward.y.abs() > 0.999 {
+            Vec3::Z
+        } else {
+            Vec3::Y
+        };
         let right = forward.cross(up_hint).normalize();
         let up = right.cross(forward);
         let scale_y = 1.0 / (fovy_rad * 0.5).tan();
         let scale_x = scale_y * size[1] as f32 / size[0] as f32;
-        Self { eye, right, up, forward, near, scale_x, scale_y, size }
+        Self {
+            eye,
+            right,
+            up,
+            forward,
+            near,
+            scale_x,
+            scale_y,
+            size,
+        }
     }
 }

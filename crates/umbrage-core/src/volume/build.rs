@@ -69,7 +69,8 @@ impl VolumeBuilder {
         volumes: &mut Volumes,
     ) {
         let chunk_count = lights.len().div_ceil(LIGHTS_PER_CHUNK);
-        self.chunks.resize_with(chunk_count.max(self.chunks.len()), Volumes::default);
+        self.chunks
+            .resize_with(chunk_count.max(self.chunks.len()), Volumes::default);
         let pool = &self.scratch;
         self.chunks[..chunk_count]
             .par_iter_mut()
@@ -92,11 +93,13 @@ impl VolumeBuilder {
         for chunk in &self.chunks[..chunk_count] {
             let (quad_base, chain_base) = (volumes.quads.len(), volumes.chains.len());
             let shift = |r: &Range<u32>, by: usize| r.start + by as u32..r.end + by as u32;
-            volumes.lights.extend(chunk.lights.iter().map(|light| LightVolume {
-                quads: shift(&light.quads, quad_base),
-                chain: shift(&light.chain, chain_base),
-                ..light.clone()
-            }));
+            volumes
+                .lights
+                .extend(chunk.lights.iter().map(|light| LightVolume {
+                    quads: shift(&light.quads, quad_base),
+                    chain: shift(&light.chain, chain_base),
+                    ..light.clone()
+                }));
             volumes.quads.extend_from_slice(&chunk.quads);
             volumes.chains.extend_from_slice(&chunk.chains);
         }
@@ -157,7 +160,13 @@ fn build_one(world: &World, light: &Light, scratch: &mut Scratch, out: &mut Volu
     query(world, light, &mut scratch.subset);
     facing(world, light, &scratch.subset, &mut out.chains);
     let cast = &out.chains[first_chain as usize..];
-    counter(world, cast, &mut scratch.counters, &mut scratch.touched, &mut out.quads);
+    counter(
+        world,
+        cast,
+        &mut scratch.counters,
+        &mut scratch.touched,
+        &mut out.quads,
+    );
     #[cfg(debug_assertions)]
     if let Err(fault) = check_closed(
         world,

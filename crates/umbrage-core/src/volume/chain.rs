@@ -69,9 +69,7 @@ impl Chain {
 ///
 /// The edge runs the way the chain's triangles run along it, so that seen from the light the
 /// casting side is on its left.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
 #[repr(transparent)]
 pub struct Quad(pub EdgeUse);
 
@@ -80,13 +78,19 @@ impl Quad {
     #[inline]
     pub fn ends(self, edges: &Edges) -> [u32; 2] {
         let [low, high] = edges.vertices[self.0.edge() as usize];
-        if self.0.sign() > 0 { [low, high] } else { [high, low] }
+        if self.0.sign() > 0 {
+            [low, high]
+        } else {
+            [high, low]
+        }
     }
 }
 
 /// Coefficient of one triangle for one light: -1, 0 or +1.
 #[inline]
 pub fn coefficient(world: &World, light: &LightPoint, triangle: u32) -> i8 {
-    let side = world.planes.side(triangle, light, || world.corners(triangle));
+    let side = world
+        .planes
+        .side(triangle, light, || world.corners(triangle));
     world.casting[triangle as usize].coefficient(side)
 }

@@ -5,8 +5,8 @@
 //! so inside a cluster it is done in masks: a side emits its quad unless its partner's side
 //! cancels it. Only sides that share their edge beyond that touch a real counter.
 
-use super::lanes64::{Lanes64, with_lanes};
 use super::{Chain, Quad};
+use crate::lanes64::{Lanes64, with_lanes};
 use crate::world::{EdgeUse, World};
 
 /// Appends the boundary of `chain` to `quads`. `counters` has one entry an edge, all zero, and is
@@ -59,7 +59,10 @@ fn counter_with<L: Lanes64>(
         let count = std::mem::take(&mut counters[edge as usize]);
         quads[len] = Quad(EdgeUse::new(edge, count < 0));
         if count.unsigned_abs() > 1 {
-            more.extend(std::iter::repeat_n(quads[len], count.unsigned_abs() as usize - 1));
+            more.extend(std::iter::repeat_n(
+                quads[len],
+                count.unsigned_abs() as usize - 1,
+            ));
         }
         len += usize::from(count != 0);
     }

@@ -5,7 +5,7 @@
 //! leaves open are decided exactly, one by one.
 
 use super::Chain;
-use super::lanes64::{Lanes64, with_lanes};
+use crate::lanes64::{Lanes64, with_lanes};
 use crate::light::Light;
 use crate::world::{LANES, LightPoint, Subset, World, exact_side, lanes};
 
@@ -37,7 +37,11 @@ fn facing_with<L: Lanes64>(
         let wound = members.mask & front & cluster.casts_front;
         let reversed = members.mask & back & cluster.casts_back;
         if wound | reversed != 0 {
-            chain.push(Chain { cluster: members.cluster, wound, reversed });
+            chain.push(Chain {
+                cluster: members.cluster,
+                wound,
+                reversed,
+            });
         }
     }
 }

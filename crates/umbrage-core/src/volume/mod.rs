@@ -5,17 +5,20 @@
 //! volume closes by construction: whatever the subset, the soup, or the outcome of any one facing
 //! test (Aldridge and Woods 2004, section 2.4).
 
+mod brute;
 mod build;
 mod chain;
 mod counter;
+mod crow;
 mod facing;
-mod lanes64;
 mod plain;
 mod validate;
 
+pub use brute::brute;
 pub use build::{LightVolume, VolumeBuilder, Volumes};
 pub use chain::{Chain, ChainTriangle, Quad, coefficient};
 pub use counter::counter;
+pub use crow::Crow;
 pub use facing::facing;
 pub use plain::plain_counter;
 pub use validate::{ClosureFault, check_closed};

@@ -5,24 +5,19 @@
 //! chain's own triangles visited instead of all edges. The fast version in `counter` must give
 //! the same quads, in whatever order.
 
-use super::{ChainTriangle, Quad};
-use crate::world::{EdgeUse, Edges};
+use super::{Chain, Quad};
+use crate::world::{EdgeUse, World};
 
 /// Appends the boundary of `chain` to `quads`. `counters` has one entry an edge, all zero, and is
 /// all zero again afterwards.
-pub fn plain_counter(
-    edges: &Edges,
-    chain: &[ChainTriangle],
-    counters: &mut [i32],
-    quads: &mut Vec<Quad>,
-) {
-    for t in chain {
-        for u in edges.of_triangle(t.triangle()) {
+pub fn plain_counter(world: &World, chain: &[Chain], counters: &mut [i32], quads: &mut Vec<Quad>) {
+    for t in chain.iter().flat_map(Chain::triangles) {
+        for u in world.edges.of_triangle(t.triangle()) {
             counters[u.edge() as usize] += u.sign() * t.coefficient();
         }
     }
-    for t in chain {
-        for u in edges.of_triangle(t.triangle()) {
+    for t in chain.iter().flat_map(Chain::triangles) {
+        for u in world.edges.of_triangle(t.triangle()) {
             let count = std::mem::take(&mut counters[u.edge() as usize]);
             let quad = Quad(EdgeUse::new(u.edge(), count < 0));
             for _ in 0..count.unsigned_abs() {

@@ -29,7 +29,11 @@ pub fn check_closed(
 ) -> Result<(), ClosureFault> {
     let mut sums: HashMap<[u32; 2], i32> = HashMap::new();
     let mut add = |from: u32, to: u32, count: i32| {
-        let (pair, count) = if from < to { ([from, to], count) } else { ([to, from], -count) };
+        let (pair, count) = if from < to {
+            ([from, to], count)
+        } else {
+            ([to, from], -count)
+        };
         *sums.entry(pair).or_default() += count;
     };
     for t in chain {
@@ -52,7 +56,11 @@ pub fn check_closed(
         *degree.entry(to).or_default() -= 1;
     }
     match degree.iter().find(|(_, sum)| **sum != 0) {
-        Some((&v, &sum)) => Err(ClosureFault { from: v, to: v, sum }),
+        Some((&v, &sum)) => Err(ClosureFault {
+            from: v,
+            to: v,
+            sum,
+        }),
         None => Ok(()),
     }
 }

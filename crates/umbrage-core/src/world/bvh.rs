@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
-use obvhs::{BvhBuildParams, Boundable};
+use obvhs::{Boundable, BvhBuildParams};
 
 use crate::mesh::Mesh;
 
@@ -68,7 +68,11 @@ pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
     }
     let bounds: Vec<Bounds> = kept
         .iter()
-        .map(|&t| Bounds(Aabb::from_points(&mesh.corners(t as usize).map(Vec3A::from))))
+        .map(|&t| {
+            Bounds(Aabb::from_points(
+                &mesh.corners(t as usize).map(Vec3A::from),
+            ))
+        })
         .collect();
     let tree = build_bvh2(
         &bounds,

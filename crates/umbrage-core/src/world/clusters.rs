@@ -34,7 +34,11 @@ pub struct ClusterSide {
     pub shared: u64,
 }
 
-const NO_SIDE: ClusterSide = ClusterSide { partner: [0; LANES], paired: 0, shared: 0 };
+const NO_SIDE: ClusterSide = ClusterSide {
+    partner: [0; LANES],
+    paired: 0,
+    shared: 0,
+};
 
 /// Clusters of all triangles; the last may be partly empty.
 pub(super) fn clusters(casting: &[Casting], edges: &Edges) -> Vec<Cluster> {
@@ -83,5 +87,9 @@ struct EdgeUsers {
 }
 
 fn mask(chunk: &[Casting], is: impl Fn(Casting) -> bool) -> u64 {
-    chunk.iter().enumerate().map(|(lane, &c)| u64::from(is(c)) << lane).sum()
+    chunk
+        .iter()
+        .enumerate()
+        .map(|(lane, &c)| u64::from(is(c)) << lane)
+        .sum()
 }

@@ -10,9 +10,7 @@ use super::WorldReport;
 use super::clusters::LANES;
 
 /// One side of a triangle: which edge it is, and whether the triangle runs along it or against.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
 #[repr(transparent)]
 pub struct EdgeUse(pub u32);
 
@@ -84,10 +82,13 @@ pub(super) fn unique_edges(triangles: &[[u32; 3]], report: &mut WorldReport) -> 
         .iter()
         .enumerate()
         .flat_map(|(t, &[a, b, c])| {
-            [(a, b), (b, c), (c, a)].into_iter().zip(0u32..).map(move |((from, to), k)| HalfEdge {
-                pair: u64::from(from.min(to)) << 32 | u64::from(from.max(to)),
-                side: 3 * t as u32 + k,
-            })
+            [(a, b), (b, c), (c, a)]
+                .into_iter()
+                .zip(0u32..)
+                .map(move |((from, to), k)| HalfEdge {
+                    pair: u64::from(from.min(to)) << 32 | u64::from(from.max(to)),
+                    side: 3 * t as u32 + k,
+                })
         })
         .collect();
     halves.radix_sort_unstable();

@@ -4,6 +4,7 @@
 //! triangles, edges are numbered by first use in that order, and **edges hold no pointers to
 //! faces** (Aldridge and Woods 2004, section 2.3): triangles point to edges.
 
+mod boxes;
 mod bvh;
 mod clusters;
 mod edges;
@@ -18,6 +19,7 @@ use std::time::Instant;
 use glam::Vec3;
 use thiserror::Error;
 
+pub use boxes::BoxCluster;
 pub use bvh::{Bvh, Node};
 pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
@@ -131,6 +133,8 @@ pub struct World {
     pub clusters: Vec<Cluster>,
     /// Plane equations of the triangles.
     pub planes: Planes,
+    /// Boxes of the triangles.
+    pub boxes: Vec<BoxCluster>,
     /// Boxes over ranges of triangles.
     pub bvh: Bvh,
     /// What was found.
@@ -171,6 +175,7 @@ impl World {
         let casting: Vec<Casting> = source.iter().map(|&t| mesh.casting[t as usize]).collect();
         let (positions, triangles) = weld::renumber(mesh, &welded, &source);
         let planes = Planes::new(&positions, &triangles);
+        let boxes = boxes::boxes(&positions, &triangles);
         report.build_ms.order = clock.lap();
 
         let edges = edges::unique_edges(&triangles, &mut report);
@@ -185,6 +190,7 @@ impl World {
             edges,
             clusters,
             planes,
+            boxes,
             bvh,
             report,
         };
@@ -213,6 +219,7 @@ impl World {
             + self.edges.bytes()
             + size_of_val(&self.clusters[..])
             + self.planes.bytes()
+            + size_of_val(&self.boxes[..])
             + self.bvh.bytes()
     }
 }

@@ -14,7 +14,7 @@
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
-use robust::{Coord3D, orient3d};
+use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::clusters::LANES;
 use crate::light::Light;
@@ -65,7 +65,9 @@ impl Planes {
             }
             planes
         };
-        Self { clusters: triangles.par_chunks(LANES).map(cluster).collect() }
+        Self {
+            clusters: triangles.par_chunks(LANES).map(cluster).collect(),
+        }
     }
 
     /// The side of triangle `t`'s plane that the light is on; exact. `corners` are consulted only
@@ -114,13 +116,20 @@ fn plane([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     // Each component is a difference of two products of exact factors: its rounding error is
     // below 2^-52 of the larger product.
     let error = u.abs().max_element() * v.abs().max_element() * 2f64.powi(-51);
-    let n = if error < length * 2f64.powi(-27) { normal / length } else { DVec3::ZERO };
+    let n = if error < length * 2f64.powi(-27) {
+        normal / length
+    } else {
+        DVec3::ZERO
+    };
     (n, n.dot(a))
 }
 
 /// The side without the filter.
 #[cold]
 pub(crate) fn exact_side(corners: [Vec3; 3], [x, y, z, w]: [f32; 4]) -> Side {
+    if let Some(side) = axis_aligned_side(corners, [x, y, z, w]) {
+        return side;
+    }
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     let toward = DVec3::new(x.into(), y.into(), z.into());
     // A directional light is a point at infinity; any point that far along from a corner is on
@@ -132,12 +141,26 @@ pub(crate) fn exact_side(corners: [Vec3; 3], [x, y, z, w]: [f32; 4]) -> Side {
         z: p.z,
     };
     // robust: positive where `light` is below the plane of counter-clockwise a, b, c.
-    let det = orient3d(coord(a), coord(b), coord(c), coord(light));
-    if det < 0.0 {
-        1
-    } else if det > 0.0 {
-        -1
-    } else {
-        0
-    }
+    -sign(orient3d(coord(a), coord(b), coord(c), coord(light)))
+}
+
+/// A plane of constant x, y or z needs one comparison. Level floors and straight walls with lights
+/// in their planes are most of what the filter leaves open in game maps.
+fn axis_aligned_side(corners: [Vec3; 3], [x, y, z, w]: [f32; 4]) -> Option<Side> {
+    let [a, b, c] = corners;
+    let equal = a.cmpeq(b) & b.cmpeq(c);
+    let axis = (0..3).find(|&axis| equal.test(axis))?;
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    let at = |p: Vec3| Coord {
+        x: f64::from(p[j]),
+        y: f64::from(p[k]),
+    };
+    let normal = orient2d(at(a), at(b), at(c));
+    let light = [x, y, z][axis];
+    let offset = f64::from(light) - if w == 0.0 { 0.0 } else { f64::from(a[axis]) };
+    Some(sign(normal) * sign(offset))
+}
+
+fn sign(x: f64) -> Side {
+    Side::from(x > 0.0) - Side::from(x < 0.0)
 }

@@ -56,7 +56,10 @@ impl Subset {
 
     /// How many triangles are in.
     pub fn len(&self) -> usize {
-        self.members.iter().map(|m| m.mask.count_ones() as usize).sum()
+        self.members
+            .iter()
+            .map(|m| m.mask.count_ones() as usize)
+            .sum()
     }
 
     /// Whether none is in.
@@ -66,9 +69,9 @@ impl Subset {
 
     /// The triangles, ascending.
     pub fn triangles(&self) -> impl Iterator<Item = u32> {
-        self.members.iter().flat_map(|m| {
-            lanes(m.mask).map(|lane| m.cluster * LANES as u32 + lane)
-        })
+        self.members
+            .iter()
+            .flat_map(|m| lanes(m.mask).map(|lane| m.cluster * LANES as u32 + lane))
     }
 }
 

@@ -92,7 +92,11 @@ impl World {
             ("casting", self.casting.len()),
         ] {
             if found != expected {
-                return Err(WorldFault::Length { array, found, expected });
+                return Err(WorldFault::Length {
+                    array,
+                    found,
+                    expected,
+                });
             }
         }
         let expected = expected.div_ceil(LANES);
@@ -102,7 +106,11 @@ impl World {
             ("clusters", self.clusters.len()),
         ] {
             if found != expected {
-                return Err(WorldFault::Length { array, found, expected });
+                return Err(WorldFault::Length {
+                    array,
+                    found,
+                    expected,
+                });
             }
         }
         Ok(())
@@ -111,17 +119,37 @@ impl World {
     fn validate_edges(&self) -> Result<(), WorldFault> {
         let mut next = 0;
         for (triangle, corners) in self.triangles.iter().enumerate() {
-            for (side, u) in self.edges.of_triangle(triangle as u32).into_iter().enumerate() {
+            for (side, u) in self
+                .edges
+                .of_triangle(triangle as u32)
+                .into_iter()
+                .enumerate()
+            {
                 let along = [corners[side], corners[(side + 1) % 3]];
                 let Some(&[low, high]) = self.edges.vertices.get(u.edge() as usize) else {
-                    return Err(WorldFault::EdgeUse { triangle, side, edge: u.edge() });
+                    return Err(WorldFault::EdgeUse {
+                        triangle,
+                        side,
+                        edge: u.edge(),
+                    });
                 };
-                let stored = if u.sign() > 0 { [low, high] } else { [high, low] };
+                let stored = if u.sign() > 0 {
+                    [low, high]
+                } else {
+                    [high, low]
+                };
                 if stored != along {
-                    return Err(WorldFault::EdgeUse { triangle, side, edge: u.edge() });
+                    return Err(WorldFault::EdgeUse {
+                        triangle,
+                        side,
+                        edge: u.edge(),
+                    });
                 }
                 if u.edge() > next {
-                    return Err(WorldFault::NotFirstUse { what: "edge", number: u.edge() });
+                    return Err(WorldFault::NotFirstUse {
+                        what: "edge",
+                        number: u.edge(),
+                    });
                 }
                 next = next.max(u.edge() + 1);
             }
@@ -164,7 +192,10 @@ impl World {
             if as_stored != partner.map(|p| p as usize % LANES)
                 || shared != (partner.is_none() && !alone)
             {
-                return Err(WorldFault::Cluster { triangle: t, side: k });
+                return Err(WorldFault::Cluster {
+                    triangle: t,
+                    side: k,
+                });
             }
         }
         Ok(())
@@ -174,7 +205,10 @@ impl World {
         let mut next = 0;
         for &v in self.triangles.iter().flatten() {
             if v > next || v as usize >= self.positions.len() {
-                return Err(WorldFault::NotFirstUse { what: "vertex", number: v });
+                return Err(WorldFault::NotFirstUse {
+                    what: "vertex",
+                    number: v,
+                });
             }
             next = next.max(v + 1);
         }
@@ -183,7 +217,10 @@ impl World {
         order.sort_unstable_by_key(|&v| key(v));
         for pair in order.windows(2) {
             if key(pair[0]) == key(pair[1]) {
-                return Err(WorldFault::NotWelded { first: pair[0], second: pair[1] });
+                return Err(WorldFault::NotWelded {
+                    first: pair[0],
+                    second: pair[1],
+                });
             }
         }
         Ok(())

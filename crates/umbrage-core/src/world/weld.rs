@@ -56,17 +56,17 @@ pub(super) fn weld(positions: &[Vec3]) -> Welded {
     }
     Welded {
         vertex,
-        count: if positions.is_empty() { 0 } else { count as usize + 1 },
+        count: if positions.is_empty() {
+            0
+        } else {
+            count as usize + 1
+        },
     }
 }
 
 /// Positions and triangles with vertices numbered by first use in the order `source`.
 /// Vertices that no kept triangle uses are left out.
-pub(super) fn renumber(
-    mesh: &Mesh,
-    welded: &Welded,
-    source: &[u32],
-) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(super) fn renumber(mesh: &Mesh, welded: &Welded, source: &[u32]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     const UNSEEN: u32 = u32::MAX;
     let mut number = vec![UNSEEN; welded.count];
     let mut positions = Vec::with_capacity(welded.count);

@@ -39,7 +39,9 @@ pub(crate) fn dense_soup(seed: u64, vertices: usize, triangles: usize) -> Mesh {
     let mut r = Random(seed);
     Mesh {
         positions: (0..vertices).map(|_| r.point()).collect(),
-        triangles: (0..triangles).map(|_| [0; 3].map(|_| r.below(vertices) as u32)).collect(),
+        triangles: (0..triangles)
+            .map(|_| [0; 3].map(|_| r.below(vertices) as u32))
+            .collect(),
         casting: (0..triangles).map(|_| r.casting()).collect(),
     }
 }
@@ -64,7 +66,8 @@ pub(crate) fn grid(n: i32) -> Mesh {
         for x in -n..n {
             let first = mesh.positions.len() as u32;
             let corner = |dx: i32, dz: i32| Vec3::new((x + dx) as f32, 0.0, (z + dz) as f32);
-            mesh.positions.extend([corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)]);
+            mesh.positions
+                .extend([corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)]);
             mesh.triangles.push([first, first + 1, first + 2]);
             mesh.triangles.push([first, first + 2, first + 3]);
         }
@@ -74,15 +77,32 @@ pub(crate) fn grid(n: i32) -> Mesh {
 }
 
 pub(crate) fn point_light(position: Vec3, range: f32) -> Light {
-    Light { position, range, shape: LightShape::Point }
+    Light {
+        position,
+        range,
+        shape: LightShape::Point,
+    }
 }
 
 pub(crate) fn sun(direction: Vec3) -> Light {
-    let shape = LightShape::Directional { direction: direction.normalize() };
-    Light { position: Vec3::ZERO, range: f32::INFINITY, shape }
+    let shape = LightShape::Directional {
+        direction: direction.normalize(),
+    };
+    Light {
+        position: Vec3::ZERO,
+        range: f32::INFINITY,
+        shape,
+    }
 }
 
 pub(crate) fn spot(position: Vec3, direction: Vec3, cos_outer: f32, range: f32) -> Light {
-    let shape = LightShape::Spot { direction: direction.normalize(), cos_outer };
-    Light { position, range, shape }
+    let shape = LightShape::Spot {
+        direction: direction.normalize(),
+        cos_outer,
+    };
+    Light {
+        position,
+        range,
+        shape,
+    }
 }

@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{Vec2, Vec3};
 use gltf::Glb;
@@ -128,22 +128,11 @@ pub(super) fn save(
         json: json.into(),
         bin: (!binary.is_empty()).then_some(Cow::Borrowed(binary)),
     };
-    let mut part = path.as_os_str().to_owned();
-    part.push(format!(".{}.part", std::process::id()));
-    let part = PathBuf::from(part);
-    let write = || -> std::io::Result<()> {
-        let mut file = std::fs::File::create(&part)?;
-        container
-            .to_writer(&mut file)
-            .map_err(|error| match error {
-                gltf::Error::Io(error) => error,
-                other => std::io::Error::other(other),
-            })?;
-        file.sync_all()?;
-        std::fs::rename(&part, path)
+    let fill = |file: &mut std::fs::File| {
+        container.to_writer(file).map_err(|error| match error {
+            gltf::Error::Io(error) => error,
+            other => std::io::Error::other(other),
+        })
     };
-    write().map_err(|error| {
-        let _ = std::fs::remove_file(&part); // it may not exist; the first error matters
-        SceneError::io(path)(error)
-    })
+    super::whole(path, fill).map_err(SceneError::io(path))
 }

@@ -1,17 +1,20 @@
-//! 64 lanes at a time: the few operations that facing and counter are made of.
+//! 64 lanes at a time: the few operations that query, facing and counter are made of.
 //!
 //! Two implementations with the same results, bit for bit and in order: AVX-512 (with VBMI for
 //! the byte permute) through `std::arch`, chosen at run time, and a portable one. `std::arch`
 //! because no portable crate offers 64-byte permutes and register compression, which are what
 //! makes the difference here.
 
-use super::Quad;
-use crate::world::{EdgeUse, FILTER, LANES, LightPoint, PlaneCluster};
+use crate::volume::Quad;
+use crate::world::{BoxCluster, EdgeUse, FILTER, LANES, LightPoint, PlaneCluster};
 
 /// See the module.
-pub(super) trait Lanes64: Copy {
+pub(crate) trait Lanes64: Copy {
     /// Triangles proven in front of, and behind, the light's side of their plane.
     fn sides(self, planes: &PlaneCluster, light: &LightPoint) -> (u64, u64);
+
+    /// The boxes whose distance from `center` is at most the root of `range2`.
+    fn near(self, boxes: &BoxCluster, center: [f32; 3], range2: f32) -> u64;
 
     /// Bit i of the result is bit `partner[i]` of `mask`.
     fn permute(self, mask: u64, partner: &[u8; LANES]) -> u64;
@@ -24,20 +27,20 @@ pub(super) trait Lanes64: Copy {
 macro_rules! with_lanes {
     ($function:ident($($argument:expr),*)) => {{
         #[cfg(target_arch = "x86_64")]
-        if let Some(lanes) = crate::volume::lanes64::Avx512::detect() {
+        if let Some(lanes) = crate::lanes64::Avx512::detect() {
             return lanes.run(
                 #[inline(always)]
                 |lanes| $function(lanes, $($argument),*),
             );
         }
-        $function(crate::volume::lanes64::Portable, $($argument),*)
+        $function(crate::lanes64::Portable, $($argument),*)
     }};
 }
-pub(super) use with_lanes;
+pub(crate) use with_lanes;
 
 /// Plain Rust.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Portable;
+pub(crate) struct Portable;
 
 impl Lanes64 for Portable {
     #[inline(always)]
@@ -52,6 +55,20 @@ impl Lanes64 for Portable {
             back |= u64::from(s < -bound) << i;
         }
         (front, back)
+    }
+
+    #[inline(always)]
+    fn near(self, boxes: &BoxCluster, center: [f32; 3], range2: f32) -> u64 {
+        let mut near = 0;
+        for i in 0..LANES {
+            let [x, y, z] = [0, 1, 2].map(|axis| {
+                let below = boxes.min[axis][i] - center[axis];
+                let above = center[axis] - boxes.max[axis][i];
+                below.max(above).max(0.0)
+            });
+            near |= u64::from(x * x + y * y + z * z <= range2) << i;
+        }
+        near
     }
 
     #[inline(always)]
@@ -74,19 +91,20 @@ impl Lanes64 for Portable {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use avx512::Avx512;
+pub(crate) use avx512::Avx512;
 
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code, reason = "measured: see the module's head")]
 mod avx512 {
     use std::arch::x86_64::{
-        _mm512_abs_ps, _mm512_add_ps, _mm512_cmp_ps_mask, _mm512_loadu_ps, _mm512_loadu_si512,
-        _mm512_maskz_compress_epi32, _mm512_movepi8_mask, _mm512_movm_epi8, _mm512_mul_ps,
-        _mm512_permutexvar_epi8, _mm512_set1_epi32, _mm512_set1_ps, _mm512_setzero_ps,
-        _mm512_storeu_si512, _mm512_sub_ps, _mm512_xor_si512, _CMP_GT_OQ, _CMP_LT_OQ,
+        _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm512_abs_ps, _mm512_add_ps, _mm512_cmp_ps_mask,
+        _mm512_loadu_ps, _mm512_loadu_si512, _mm512_maskz_compress_epi32, _mm512_max_ps,
+        _mm512_movepi8_mask, _mm512_movm_epi8, _mm512_mul_ps, _mm512_permutexvar_epi8,
+        _mm512_set1_epi32, _mm512_set1_ps, _mm512_setzero_ps, _mm512_storeu_si512, _mm512_sub_ps,
+        _mm512_xor_si512,
     };
 
-    use super::{EdgeUse, FILTER, LANES, Lanes64, LightPoint, PlaneCluster, Quad};
+    use super::{BoxCluster, EdgeUse, FILTER, LANES, Lanes64, LightPoint, PlaneCluster, Quad};
 
     /// Proof that the processor has AVX-512 F, BW and VBMI.
     #[derive(Clone, Copy, Debug)]
@@ -137,6 +155,31 @@ mod avx512 {
                     back |= u64::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(s, minus)) << (16 * chunk);
                 }
                 (front, back)
+            }
+        }
+
+        #[inline(always)]
+        fn near(self, boxes: &BoxCluster, center: [f32; 3], range2: f32) -> u64 {
+            // SAFETY: the features are there, and each load of 16 lanes stays inside an array of
+            // 64.
+            unsafe {
+                let center = center.map(|c| _mm512_set1_ps(c));
+                let range2 = _mm512_set1_ps(range2);
+                let zero = _mm512_setzero_ps();
+                let mut near = 0;
+                for chunk in 0..LANES / 16 {
+                    let load = |a: &[f32; LANES]| _mm512_loadu_ps(a.as_ptr().add(16 * chunk));
+                    let [x, y, z] = [0, 1, 2].map(|axis| {
+                        let below = _mm512_sub_ps(load(&boxes.min[axis]), center[axis]);
+                        let above = _mm512_sub_ps(center[axis], load(&boxes.max[axis]));
+                        let side = _mm512_max_ps(_mm512_max_ps(below, above), zero);
+                        _mm512_mul_ps(side, side)
+                    });
+                    let sum = _mm512_add_ps(_mm512_add_ps(x, y), z);
+                    let kept = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(sum, range2);
+                    near |= u64::from(kept) << (16 * chunk);
+                }
+                near
             }
         }
 

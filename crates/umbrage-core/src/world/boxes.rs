@@ -1,0 +1,35 @@
+//! Boxes of single triangles, 64 at a time, for queries.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::clusters::LANES;
+
+/// Lower and upper corners of the boxes of 64 triangles.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct BoxCluster {
+    /// Lower x, y, z.
+    pub min: [[f32; LANES]; 3],
+    /// Upper x, y, z.
+    pub max: [[f32; LANES]; 3],
+}
+
+/// Boxes of all triangles; missing lanes of the last cluster are empty boxes far away.
+pub(super) fn boxes(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<BoxCluster> {
+    let cluster = |triangles: &[[u32; 3]]| {
+        let mut boxes = BoxCluster {
+            min: [[f32::INFINITY; LANES]; 3],
+            max: [[f32::INFINITY; LANES]; 3],
+        };
+        for (lane, t) in triangles.iter().enumerate() {
+            let [a, b, c] = t.map(|v| positions[v as usize]);
+            for axis in 0..3 {
+                boxes.min[axis][lane] = a[axis].min(b[axis]).min(c[axis]);
+                boxes.max[axis][lane] = a[axis].max(b[axis]).max(c[axis]);
+            }
+        }
+        boxes
+    };
+    triangles.par_chunks(LANES).map(cluster).collect()
+}
