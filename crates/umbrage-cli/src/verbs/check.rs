@@ -52,7 +52,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         .with_near(lab.near_clip())
         .with_skipped(lab.plan.lights.iter().map(skipped).collect());
     let found = judge(&oracle, view, &plain, &mask, &options, &|done, _| {
-        bar.advance(done)
+        bar.advance(done);
     });
     let [zpass, zfail, skipped] = lab.lights_by_path().map(|count| count as u64);
     let worst = found.worst.iter().map(|worst| WorstPixel {

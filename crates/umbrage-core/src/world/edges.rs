@@ -121,10 +121,9 @@ pub(super) fn unique_edges(triangles: &[[u32; 3]], report: &mut WorldReport) -> 
     }
     let mut sides = vec![[[EdgeUse::default(); LANES]; 3]; triangles.len().div_ceil(LANES)];
     for t in 0..triangles.len() {
-        for k in 0..3 {
-            let side = 3 * t as u32 + k as u32;
-            let reversed = !runs_along(triangles, side);
-            sides[t / LANES][k][t % LANES] = EdgeUse::new(edge_of_side[side as usize], reversed);
+        let lanes = sides[t / LANES].iter_mut().map(|side| &mut side[t % LANES]);
+        for (side, lane) in (3 * t as u32..).zip(lanes) {
+            *lane = EdgeUse::new(edge_of_side[side as usize], !runs_along(triangles, side));
         }
     }
     report.duplicate_triangles = count_duplicates(triangles);
