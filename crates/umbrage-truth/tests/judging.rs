@@ -99,7 +99,8 @@ fn edge_beside_centres(offset_px: f32) -> Judgement {
         [p(x[0], -y, z), p(x[1], -y, z), p(x[1], y, z), p(x[0], y, z)]
     };
     let edge = -8.0 + (20.5 + offset_px) * 0.25;
-    quad(&mut mesh, wall([-20.0, 20.0], 20.0, 0.0), Casting::Front);
+    // Wider than high: its diagonal passes no pixel centre.
+    quad(&mut mesh, wall([-20.0, 21.0], 20.0, 0.0), Casting::Front);
     quad(
         &mut mesh,
         wall([edge - 2.0, edge - 1.0], 30.0, 1.0),

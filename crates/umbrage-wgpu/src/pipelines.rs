@@ -48,7 +48,7 @@ impl Pipelines {
         };
         Self {
             zpass_sides: build("umbrage z-pass sides", "side", Counts::InFront),
-            zfail_sides: build("umbrage z-fail sides", "side", Counts::Behind),
+            zfail_sides: build("umbrage z-fail sides", "zfail_side", Counts::Behind),
             zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind),
             zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed),
         }

@@ -37,17 +37,24 @@ fn vertex(@builtin(vertex_index) corner: u32) -> Varying {
     let triangle = corner / 3u;
     let first = 3u * triangle;
     let p = position(triangles[corner]);
+    let a = position(triangles[first]);
+    let b = position(triangles[first + 1u]);
+    let c = position(triangles[first + 2u]);
+    let face = cross(b - a, c - a);
+    let q = array(a - view.eye, b - view.eye, c - view.eye);
+    let size = max(max(length(q[0]), length(q[1])), length(q[2]));
     var out: Varying;
+    if umbrage_eye_in_plane(face, q[0], size) {
+        out.clip = UMBRAGE_NOWHERE;
+        return out;
+    }
     out.clip = umbrage_clip(view, p - view.eye, 1.0);
     out.distance = out.clip.w;
     out.material = triangle_material[triangle];
     if arrayLength(&normals) > 1u {
         out.normal = unpack4x8snorm(normals[corner]).xyz;
     } else {
-        let a = position(triangles[first]);
-        let b = position(triangles[first + 1u]);
-        let c = position(triangles[first + 2u]);
-        out.normal = cross(b - a, c - a);
+        out.normal = face;
     }
     if arrayLength(&uvs) > 1u {
         out.uv = uvs[corner];

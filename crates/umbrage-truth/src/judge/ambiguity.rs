@@ -23,10 +23,11 @@
 //! is within 2^-20 of its distance along the eye ray, so contact shadows stay checked. A test
 //! inverts a mask of boxes in a bumpy landscape and bounds what is called ambiguous.
 //!
-//! The verdict is also ambiguous if one of the eight rays first meets another triangle than the
-//! pixel's own (or a coincident one): then the pixel's centre is within four steps of the
+//! The verdict is also ambiguous if one of the eight rays first meets other triangles than the
+//! pixel's own and those that coincide with it: then the pixel's centre is within four steps of the
 //! rasteriser's grid of an edge, and the method may see either triangle's plane there, or, at a
-//! T-junction that snapping to the grid tears open, what is behind both. This forgives whatever
+//! T-junction that snapping to the grid tears open, what is behind both; and a silhouette quad may
+//! start there, though a coincident triangle goes on (coplanar overlaps). This forgives whatever
 //! happens in a band of 1/32 pixel along the edges of the mesh, nothing inside triangles.
 
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -78,9 +79,9 @@ impl Neighbourhood {
             .collect();
         let surface = &pixel.surface;
         let primary_changes = sideways.iter().any(|other| {
-            other.as_ref().is_none_or(|other| {
-                other.slot != surface.slot && !surface.ties.contains(&other.slot)
-            })
+            other
+                .as_ref()
+                .is_none_or(|other| !same_triangles(other, surface))
         });
         let ray = rays.ray(x, y);
         if rays.near == NearClip::Clipped {
@@ -124,4 +125,10 @@ impl Neighbourhood {
                 self.between.contains(&slot)
             }) != verdict
     }
+}
+
+/// Whether two hits are on the same triangles, coincident ones included.
+fn same_triangles(a: &Surface, b: &Surface) -> bool {
+    let has = |s: &Surface, slot: &usize| s.slot == *slot || s.ties.contains(slot);
+    a.ties.len() == b.ties.len() && has(a, &b.slot) && b.ties.iter().all(|slot| has(a, slot))
 }

@@ -22,3 +22,17 @@ fn umbrage_clip(view: View, q: vec3f, w: f32) -> vec4f {
         dot(view.forward, q),
     );
 }
+
+// Whether the eye, as far as f32 can tell, lies in the plane of a polygon: `normal` of any length,
+// `q` from the eye to a point of the plane, `size` from the eye to the farthest vertex. Such a
+// polygon is seen edge-on and covers no pixel; rounded, it may cover half of them, at any depth. So
+// the depth pass and the volumes leave it out alike.
+fn umbrage_eye_in_plane(normal: vec3f, q: vec3f, size: f32) -> bool {
+    return abs(dot(normal, q)) <= UMBRAGE_ROUNDING * size * length(normal);
+}
+
+// What clip positions are rounded by, as a share of the distance: 2^-22.
+const UMBRAGE_ROUNDING: f32 = 1.0 / 4194304.0;
+
+// Where the corners of a polygon that is left out go.
+const UMBRAGE_NOWHERE = vec4f(0.0, 0.0, 0.0, 1.0);

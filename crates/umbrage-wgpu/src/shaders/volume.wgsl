@@ -31,24 +31,64 @@ fn volume_vertex(vertex: u32, extruded: bool, light: vec4f, recede: f32) -> vec4
 }
 
 // Two triangles a quad: (a, a', b) and (b, a', b'), a' extruded; front faces look outward.
+fn side_corner(ends: vec2u, index: u32, light: vec4f) -> vec4f {
+    let corner = index % 6u;
+    let at_end = corner == 2u || corner == 3u || corner == 5u;
+    let extruded = corner == 1u || corner >= 4u;
+    return volume_vertex(select(ends.x, ends.y, at_end), extruded, light, RECEDE);
+}
+
+// Start and end of a quad's edge.
+fn quad_ends(quad: u32) -> vec2u {
+    let word = quads[quad];
+    let ends = edges[word >> 1u];
+    return select(ends, ends.yx, (word & 1u) == 1u);
+}
+
 @vertex
 fn side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
 {
-    let word = quads[index / 6u];
-    let corner = index % 6u;
-    let ends = edges[word >> 1u];
-    let at_end = corner == 2u || corner == 3u || corner == 5u;
-    let reversed = (word & 1u) == 1u;
-    let vertex = select(ends.x, ends.y, at_end != reversed);
-    let extruded = corner == 1u || corner >= 4u;
-    return volume_vertex(vertex, extruded, lights[light], RECEDE);
+    return side_corner(quad_ends(index / 6u), index, lights[light]);
+}
+
+// The z-fail path's sides: those that the eye is on are left out.
+@vertex
+fn zfail_side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
+    -> @builtin(position) @invariant vec4f
+{
+    let ends = quad_ends(index / 6u);
+    if eye_on_side(position(ends.x), position(ends.y), lights[light]) {
+        return UMBRAGE_NOWHERE;
+    }
+    return side_corner(ends, index, lights[light]);
+}
+
+// Whether the eye is on the side that the edge a-b casts, not just in its plane.
+fn eye_on_side(a: vec3f, b: vec3f, light: vec4f) -> bool {
+    let qa = a - view.eye;
+    let qb = b - view.eye;
+    let edge = b - a;
+    let away_a = a * light.w - light.xyz;
+    let away_b = b * light.w - light.xyz;
+    let normal = cross(edge, away_a);
+    let size = max(length(qa), length(qb));
+    // Between the two extruded sides, and beyond the edge. A wide margin: what else lies in the
+    // plane is seen edge-on.
+    let slack = size * 1e-3;
+    let inward_a = cross(normalize(away_a), normalize(normal));
+    let inward_b = cross(normalize(normal), normalize(away_b));
+    let outward = away_a - edge * (dot(away_a, edge) / dot(edge, edge));
+    return umbrage_eye_in_plane(normal, qa, size)
+        && dot(inward_a, -qa) >= -slack
+        && dot(inward_b, -qb) >= -slack
+        && dot(normalize(outward), -qa) >= -slack;
 }
 
 // The light cap with the triangle's own vertex order, then the dark cap with the other winding. A
 // triangle taken reversed keeps its order and is drawn by a pipeline that counts the other way
 // round: rasterised in another order, the cap's depth could differ from that of the visible
-// triangle it lies in.
+// triangle it lies in. A light cap in whose plane the eye is, is left out.
 @vertex
 fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
@@ -56,8 +96,17 @@ fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     let corner = index % 6u;
     let extruded = corner >= 3u;
     let k = select(corner, (6u - corner) % 3u, extruded);
-    let vertex = triangles[3u * (caps[index / 6u] >> 1u) + k];
-    return volume_vertex(vertex, extruded, lights[light], 1.0);
+    let first = 3u * (caps[index / 6u] >> 1u);
+    if !extruded {
+        let a = position(triangles[first]) - view.eye;
+        let b = position(triangles[first + 1u]) - view.eye;
+        let c = position(triangles[first + 2u]) - view.eye;
+        let size = max(max(length(a), length(b)), length(c));
+        if umbrage_eye_in_plane(cross(b - a, c - a), a, size) {
+            return UMBRAGE_NOWHERE;
+        }
+    }
+    return volume_vertex(triangles[first + k], extruded, lights[light], 1.0);
 }
 
 @fragment

@@ -1,0 +1,294 @@
+//! The binary as scripts see it: exit codes, JSON keys, and files that are whole or not there.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A folder of its own for each test, removed with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("umbrage-{test}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a temporary folder");
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_string_lossy().into_owned()
+    }
+
+    fn files(&self) -> Vec<String> {
+        let entries = self.0.read_dir().expect("the folder is there");
+        let mut names: Vec<String> = entries
+            .map(|e| e.expect("an entry").file_name().to_string_lossy().into())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // Left behind at worst: it is the system's temporary folder.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn umbrage(arguments: &[&str]) -> Output {
+    let binary = env!("CARGO_BIN_EXE_umbrage");
+    Command::new(binary)
+        .args(arguments)
+        .output()
+        .expect("the binary starts")
+}
+
+/// Runs and gives what `--json -` printed.
+fn json(code: i32, arguments: &[&str]) -> Value {
+    let output = umbrage(&[arguments, &["--json", "-", "--quiet"]].concat());
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{arguments:?}: {e}"))
+}
+
+/// Refused: this code, a message, nothing on standard output, no panic.
+fn refused(code: i32, arguments: &[&str]) -> String {
+    let output = umbrage(arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
+    assert!(
+        !errors.trim().is_empty() && !errors.contains("panicked"),
+        "{arguments:?}: {errors}"
+    );
+    assert!(output.stdout.is_empty(), "{arguments:?} printed results");
+    errors
+}
+
+fn assert_keys(value: &Value, keys: &str) {
+    let object = value
+        .as_object()
+        .unwrap_or_else(|| panic!("no object: {value}"));
+    for key in keys.split(' ') {
+        assert!(
+            object.contains_key(key),
+            "{key} missing in {:?}",
+            object.keys()
+        );
+    }
+}
+
+/// Width and height of a PNG that decodes whole.
+fn png_size(path: &str) -> (u32, u32) {
+    let bytes = std::fs::read(path).expect("a picture");
+    assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+        .read_info()
+        .expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut pixels).expect("whole image data");
+    assert!(
+        pixels.iter().any(|&p| p != pixels[0]),
+        "{path} shows nothing"
+    );
+    (info.width, info.height)
+}
+
+const SOUP: &str = "gen:soup?triangles=300&lights=5&seed=3";
+const SMALL: [&str; 2] = ["--size", "128x96"];
+
+#[test]
+fn render_reports_and_writes_a_picture() {
+    let folder = Folder::new("render");
+    let (picture, masks) = (folder.path("soup.png"), folder.path("masks"));
+    let options = [
+        "render",
+        SOUP,
+        "-o",
+        &picture,
+        "--mask-out",
+        &masks,
+        "--repeat",
+        "1",
+    ];
+    let report = json(0, &[&options[..], &SMALL].concat());
+    assert_keys(
+        &report,
+        "scene method adapter size frame_ms stages_ms totals lights",
+    );
+    assert_keys(
+        &report["totals"],
+        "subset_triangles facing_triangles quads cap_triangles polygons uploaded_bytes \
+         lights_rebuilt lights_cached lights_skipped",
+    );
+    let lights = report["lights"].as_array().expect("a list of lights");
+    assert_eq!(lights.len(), 5);
+    for light in lights {
+        assert_keys(
+            light,
+            "name kind range subset_triangles facing_triangles quads cap_triangles path reason \
+             cached build_us gpu_us",
+        );
+        let path = light["path"].as_str().expect("a word");
+        assert!(["zpass", "zfail", "skipped"].contains(&path));
+        assert_eq!(path == "zpass", light["reason"] == "", "{light}");
+    }
+    let sum = |key: &str| lights.iter().filter_map(|l| l[key].as_u64()).sum::<u64>();
+    assert_eq!(report["totals"]["quads"], sum("quads"));
+    assert!(sum("quads") > 0);
+    assert_eq!(report["method"], "counter");
+    assert_eq!(report["size"], serde_json::json!([128, 96]));
+    assert_eq!(png_size(&picture), (128, 96));
+    assert_eq!(folder.files(), ["masks", "soup.png"]);
+    assert_eq!(Path::new(&masks).read_dir().expect("masks").count(), 5);
+}
+
+#[test]
+fn inspect_counts() {
+    let report = json(0, &["inspect", "gen:field?n=4&lights=2"]);
+    assert_keys(
+        &report,
+        "triangles vertices welded_vertices unique_edges edges_by_triangles opposite_wound_pairs \
+         degenerate_triangles duplicate_triangles bytes_per_triangle lights build_ms",
+    );
+    assert_keys(&report["build_ms"], "load weld edges bvh order total");
+    // 4 x 4 cells of two triangles: 2 * 4 * 5 + 16 edges, of which 16 are on the border.
+    assert_eq!(report["triangles"], 32);
+    assert_eq!(report["welded_vertices"], 25);
+    assert_eq!(report["unique_edges"], 56);
+    let classes = serde_json::json!({"1": 16, "2": 40, "3": 0, "4+": 0});
+    assert_eq!(report["edges_by_triangles"], classes);
+    assert_eq!(report["lights"], 2);
+}
+
+#[test]
+fn check_passes_for_exact_methods() {
+    for method in ["counter", "counter-zfail"] {
+        for casters in ["material", "both"] {
+            let options = ["check", SOUP, "--method", method, "--casters", casters];
+            let report = json(0, &[&options[..], &SMALL].concat());
+            assert_keys(
+                &report,
+                "scene method adapter size pixels lights samples wrong ambiguous tolerance_px \
+                 tolerance_depth closed worst lights_by_path",
+            );
+            assert_keys(&report["lights_by_path"], "zpass zfail skipped");
+            assert_eq!(
+                (&report["wrong"], &report["closed"]),
+                (&0.into(), &true.into())
+            );
+            assert!(report["samples"].as_u64() > Some(1000), "{report}");
+            assert_eq!(report["tolerance_px"], 1.0 / 64.0);
+        }
+    }
+}
+
+/// A method that promises nothing is counted, not failed.
+#[test]
+fn check_counts_what_no_shadows_get_wrong() {
+    let report = json(
+        0,
+        &[&["check", SOUP, "--method", "none"][..], &SMALL].concat(),
+    );
+    assert!(report["wrong"].as_u64() > Some(100), "{report}");
+    let worst = report["worst"].as_array().expect("a list");
+    assert!(!worst.is_empty());
+    worst
+        .iter()
+        .for_each(|pixel| assert_keys(pixel, "x y light"));
+}
+
+#[test]
+fn gen_writes_what_loads_again() {
+    for spec in [
+        SOUP,
+        "gen:city?triangles=3000&lights=7&seed=2",
+        "gen:field?n=16&lights=3",
+    ] {
+        let folder = Folder::new(&format!("gen-{}", spec.len()));
+        let file = folder.path("world.glb");
+        let written = json(0, &["gen", spec, "-o", &file]);
+        assert_eq!(folder.files(), ["world.glb"]);
+        let [generated, loaded] = [spec, file.as_str()].map(|scene| json(0, &["inspect", scene]));
+        assert_eq!(written["triangles"], loaded["triangles"]);
+        for key in [
+            "triangles",
+            "welded_vertices",
+            "unique_edges",
+            "edges_by_triangles",
+            "opposite_wound_pairs",
+            "degenerate_triangles",
+            "duplicate_triangles",
+            "lights",
+        ] {
+            assert_eq!(generated[key], loaded[key], "{spec}: {key}");
+        }
+    }
+}
+
+#[test]
+fn bad_input_exits_with_2_and_writes_nothing() {
+    let folder = Folder::new("bad");
+    let broken = folder.path("broken.glb");
+    std::fs::write(&broken, b"glTF but not really").expect("a broken file");
+    let before = folder.files();
+    let (picture, results) = (folder.path("out.png"), folder.path("out.json"));
+    let missing = folder.path("missing.glb");
+    let outputs = ["-o", &picture, "--json", &results];
+    for scene in [
+        broken.as_str(),
+        &missing,
+        "gen:nowhere",
+        "gen:soup?triangles=-1",
+        "scene.txt",
+    ] {
+        refused(2, &[&["render", scene][..], &outputs].concat());
+        refused(2, &["inspect", scene, "--json", &results]);
+        refused(2, &["check", scene, "--json", &results]);
+    }
+    for options in [
+        ["--size", "0x10"],
+        ["--camera", "no-such-camera"],
+        ["--method", "no-such-method"],
+        ["--lights", "no-such-file.json"],
+        ["--range", "-1"],
+        ["--near", "0"],
+        ["--threads", "0"],
+    ] {
+        refused(2, &[&["render", SOUP][..], &outputs, &options].concat());
+    }
+    refused(2, &["gen", "gen:nowhere", "-o", &folder.path("out.glb")]);
+    refused(2, &["gen", "soup", "-o", &folder.path("out.obj")]);
+    refused(2, &["dance", SOUP]);
+    refused(2, &[]);
+    assert_eq!(folder.files(), before, "a refusal left something behind");
+}
+
+#[test]
+fn no_such_adapter_exits_with_3() {
+    let folder = Folder::new("adapter");
+    let picture = folder.path("out.png");
+    let options = ["--adapter", "no-such-adapter"];
+    let message = refused(
+        3,
+        &[&["render", SOUP, "-o", &picture][..], &SMALL, &options].concat(),
+    );
+    assert!(message.contains("no-such-adapter"), "{message}");
+    refused(3, &[&["check", SOUP][..], &SMALL, &options].concat());
+    assert!(folder.files().is_empty());
+}
+
+#[test]
+fn results_go_to_a_file_as_to_standard_output() {
+    let folder = Folder::new("json");
+    let file = folder.path("results.json");
+    let output = umbrage(&["inspect", SOUP, "--json", &file, "--quiet"]);
+    assert!(output.status.success() && output.stdout.is_empty());
+    let text = std::fs::read(&file).expect("the results");
+    let written: Value = serde_json::from_slice(&text).expect("JSON");
+    let printed = json(0, &["inspect", SOUP]);
+    assert_eq!(written["unique_edges"], printed["unique_edges"]);
+    // Without --quiet and --json there is a table for people.
+    let table = umbrage(&["inspect", SOUP]);
+    assert!(String::from_utf8_lossy(&table.stdout).contains("unique edges"));
+}
