@@ -14,7 +14,6 @@ pub(crate) fn test() -> Result<(), Stop> {
     summarised(|steps| {
         run_lint(steps)?;
         steps.cargo_test("test, validators on", &["--workspace"])?;
-        steps.cargo_test("test, release", &["--release", "-p", "umbrage-workspace"])?;
         let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
         steps.run(
             "documentation",
