@@ -4,8 +4,8 @@
 
 use divan::{Bencher, black_box};
 use umbrage_core::Light;
-use umbrage_core::volume::{VolumeBuilder, Volumes, chain, counter};
-use umbrage_core::world::{World, query};
+use umbrage_core::volume::{self, VolumeBuilder, Volumes, counter};
+use umbrage_core::world::{Subset, World, query};
 use umbrage_lab::stage::{Casters, Stage};
 
 const SCENES: [&str; 2] = [
@@ -38,7 +38,7 @@ fn world(bencher: Bencher<'_, '_>, scene: &str) {
 #[divan::bench(args = SCENES)]
 fn queries(bencher: Bencher<'_, '_>, scene: &str) {
     let (stage, lights) = stage(scene);
-    let mut subset = Vec::new();
+    let mut subset = Subset::default();
     bencher.bench_local(|| {
         for light in &lights {
             query(&stage.world, black_box(light), &mut subset);
@@ -49,26 +49,26 @@ fn queries(bencher: Bencher<'_, '_>, scene: &str) {
 #[divan::bench(args = SCENES)]
 fn facing(bencher: Bencher<'_, '_>, scene: &str) {
     let (stage, lights) = stage(scene);
-    let (mut subset, mut cast) = (Vec::new(), Vec::new());
+    let (mut subset, mut cast) = (Subset::default(), Vec::new());
     query(&stage.world, &lights[0], &mut subset);
-    bencher.bench_local(|| chain(&stage.world, black_box(&lights[0]), &subset, &mut cast));
+    bencher.bench_local(|| {
+        cast.clear();
+        volume::facing(&stage.world, black_box(&lights[0]), &subset, &mut cast);
+    });
 }
 
 #[divan::bench(args = SCENES)]
 fn counters(bencher: Bencher<'_, '_>, scene: &str) {
     let (stage, lights) = stage(scene);
-    let (mut subset, mut cast, mut quads) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut subset, mut cast) = (Subset::default(), Vec::new());
+    let (mut touched, mut quads) = (Vec::new(), Vec::new());
     let mut counts = vec![0; stage.world.edges.vertices.len()];
     query(&stage.world, &lights[0], &mut subset);
-    chain(&stage.world, &lights[0], &subset, &mut cast);
+    volume::facing(&stage.world, &lights[0], &subset, &mut cast);
     bencher.bench_local(|| {
         quads.clear();
-        counter(
-            &stage.world.edges,
-            black_box(&cast),
-            &mut counts,
-            &mut quads,
-        );
+        let cast = black_box(&cast);
+        counter(&stage.world, cast, &mut counts, &mut touched, &mut quads);
     });
 }
 

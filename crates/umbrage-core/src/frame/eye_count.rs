@@ -1,6 +1,6 @@
 //! How many casters stand between the light and the eye: where the z-pass count starts.
 //!
-//! Takes a world, a light with its quads, and an eye; gives the number of chain triangles that the
+//! Takes a world, a light with its chain and quads, and an eye; gives the number of chain triangles that the
 //! segment from light to eye crosses, or `Ambiguous` where the eye is so close to a side of the
 //! volume that the GPU's rounding might put it on the other side.
 //!
@@ -12,8 +12,8 @@ use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::light::Light;
-use crate::volume::{Quad, coefficient};
-use crate::world::{LightPoint, Reach, World};
+use crate::volume::{Chain, Quad};
+use crate::world::{LANES, World};
 
 /// Where the count of an eye ray starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,13 +32,17 @@ pub enum EyeCount {
 /// generous tolerance costs one in some hundreds of lights a z-fail.
 const SIDE_TOLERANCE: f64 = 1.0 / (1u64 << 11) as f64;
 
-/// Counts the casters between `light` and `eye`. `quads` are the light's own.
-pub fn eye_count(world: &World, light: &Light, quads: &[Quad], eye: glam::Vec3) -> EyeCount {
+/// Counts the casters between `light` and `eye`. `chain` and `quads` are the light's own.
+pub fn eye_count(
+    world: &World,
+    light: &Light,
+    chain: &[Chain],
+    quads: &[Quad],
+    eye: glam::Vec3,
+) -> EyeCount {
     let Some(root) = world.bvh.nodes.first() else {
         return EyeCount::Exact(0);
     };
-    let point = LightPoint::new(light);
-    let reach = Reach::new(light);
     let segment = Segment::new(light, eye, root.min.as_dvec3(), root.max.as_dvec3());
     let mut count = 0;
     let mut stack = vec![0usize];
@@ -54,13 +58,12 @@ pub fn eye_count(world: &World, light: &Light, quads: &[Quad], eye: glam::Vec3) 
         }
         for t in node.range() {
             let corners = world.corners(t);
-            if !segment.meets_box_of(corners) || !reach.touches(corners) {
+            if !segment.meets_box_of(corners) {
                 continue;
             }
-            let c = coefficient(world, &point, t);
-            if c == 0 {
+            let Some(c) = coefficient_in(chain, t) else {
                 continue;
-            }
+            };
             let p = corners.map(glam::Vec3::as_dvec3);
             let on_side = (0..3).any(|k| {
                 segment.eye_near_side(p[k], p[(k + 1) % 3]) && {
@@ -77,6 +80,20 @@ pub fn eye_count(world: &World, light: &Light, quads: &[Quad], eye: glam::Vec3) 
         }
     }
     EyeCount::Exact(count)
+}
+
+/// The coefficient of triangle `t` if it is in the chain.
+fn coefficient_in(chain: &[Chain], t: u32) -> Option<i32> {
+    let cluster = t / LANES as u32;
+    let at = chain
+        .binary_search_by_key(&cluster, |part| part.cluster)
+        .ok()?;
+    let bit = 1 << (t % LANES as u32);
+    match (chain[at].wound & bit != 0, chain[at].reversed & bit != 0) {
+        (true, _) => Some(1),
+        (_, true) => Some(-1),
+        _ => None,
+    }
 }
 
 /// From light to eye; a directional light stands beyond the world.

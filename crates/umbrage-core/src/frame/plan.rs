@@ -141,7 +141,13 @@ impl FramePlan {
             } else if options.path == PathRule::ZFailAlways {
                 LightPath::ZFail(ZFailReason::Asked)
             } else {
-                match eye_count(world, light, volumes.quads_of(number), view.eye) {
+                match eye_count(
+                    world,
+                    light,
+                    volumes.chain_of(number),
+                    volumes.quads_of(number),
+                    view.eye,
+                ) {
                     EyeCount::Exact(eye_count) => LightPath::ZPass { eye_count },
                     EyeCount::Ambiguous => LightPath::ZFail(ZFailReason::EyeOnSide),
                 }

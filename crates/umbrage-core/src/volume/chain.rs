@@ -5,7 +5,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::world::{EdgeUse, Edges, LANES, LightPoint, World};
+use crate::world::{EdgeUse, Edges, LANES};
 
 /// A triangle of the chain: its number and whether it is taken with reversed winding, packed so
 /// that the renderer can draw it as a cap.
@@ -84,13 +84,4 @@ impl Quad {
             [high, low]
         }
     }
-}
-
-/// Coefficient of one triangle for one light: -1, 0 or +1.
-#[inline]
-pub fn coefficient(world: &World, light: &LightPoint, triangle: u32) -> i8 {
-    let side = world
-        .planes
-        .side(triangle, light, || world.corners(triangle));
-    world.casting[triangle as usize].coefficient(side)
 }

@@ -16,7 +16,7 @@ mod validate;
 
 pub use brute::brute;
 pub use build::{LightVolume, VolumeBuilder, Volumes};
-pub use chain::{Chain, ChainTriangle, Quad, coefficient};
+pub use chain::{Chain, ChainTriangle, Quad};
 pub use counter::counter;
 pub use crow::Crow;
 pub use facing::facing;

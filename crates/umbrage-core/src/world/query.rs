@@ -1,8 +1,8 @@
-//! A light to its subset: exactly the triangles that its range touches.
+//! A light to its subset: the triangles that its range may touch.
 //!
-//! Takes a world and a light; gives triangle numbers in ascending order. A triangle is in the
-//! subset if and only if [`Reach::touches`] says so, whatever path through the tree led to it: the
-//! eye count relies on that.
+//! Takes a world and a light; gives a [`Subset`]. Conservative, and tight by triangle, not by
+//! node: a triangle is in if its box meets the range ([`Reach::touches`]) and no tree node above it
+//! proves otherwise. Whoever needs to know later what was in (the eye count) asks the chain.
 
 use glam::Vec3;
 
