@@ -53,7 +53,10 @@ fn eye_counts_are_the_casters_on_the_segment() {
             let eye = 2.0 * r.point();
             let mut volumes = Volumes::default();
             VolumeBuilder::default().build(&world, &[light], |_| true, &mut volumes);
-            let chain: Vec<u32> = volumes.chain_triangles(0).map(|t| t.triangle()).collect();
+            let chain: Vec<u32> = volumes
+                .chain_triangles(0)
+                .map(umbrage_core::volume::ChainTriangle::triangle)
+                .collect();
             let (from, to) = (light.position.as_dvec3(), eye.as_dvec3());
             let Some(expected) = plain_count(&world, &chain, from, to) else {
                 continue;
