@@ -205,12 +205,14 @@ fn eye_on_a_caster() {
     );
 }
 
+/// At the light itself nothing shadowed is seen. (Between that and some hundredths of a pixel of
+/// parallax, sides are narrower than the rasteriser's grid, and their depth is rounding alone.)
 #[test]
 fn eye_at_the_light() {
     for (name, site) in [("room", room_site(Casters::Both)), ("soup", soup_site())] {
         let at = site.lights[0].light.position;
         let light = point(at, 30.0);
-        for offset in [0.0, 1e-6, 1e-4, 1e-2, 0.25] {
+        for offset in [0.0, 1e-2, 0.25] {
             let eye = at + Vec3::new(offset, -offset, 0.5 * offset);
             for target in [Vec3::X, Vec3::new(-0.4, -0.7, 0.3)] {
                 let view = site.look(eye, eye + target, SIZE);
