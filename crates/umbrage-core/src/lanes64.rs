@@ -214,3 +214,62 @@ mod avx512 {
         }
     }
 }
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+
+    /// Where the processor has AVX-512, both versions give the same bits in the same order.
+    #[test]
+    fn both_versions_agree() {
+        let Some(wide) = Avx512::detect() else { return };
+        let mut state = 7u64;
+        let mut random = move || {
+            state = state
+                .wrapping_mul(0x5851_f42d_4c95_7f2d)
+                .wrapping_add(0x1405_7b7e_f767_814f);
+            state >> 20
+        };
+        for _ in 0..500 {
+            let mut number = || (random() % 4097) as f32 / 512.0 - 4.0;
+            let mut lanes = || std::array::from_fn::<f32, LANES, _>(|_| number());
+            let planes = PlaneCluster {
+                nx: lanes(),
+                ny: lanes(),
+                nz: lanes(),
+                d: lanes(),
+            };
+            let boxes = BoxCluster {
+                min: [lanes(), lanes(), lanes()],
+                max: [lanes(), lanes(), lanes()],
+            };
+            let light = LightPoint {
+                homogeneous: [1.5, -0.25, 3.0, 1.0],
+                norm1: 4.75,
+            };
+            assert_eq!(wide.sides(&planes, &light), Portable.sides(&planes, &light));
+            let near = |r| {
+                (
+                    wide.near(&boxes, [0.5; 3], r),
+                    Portable.near(&boxes, [0.5; 3], r),
+                )
+            };
+            for (a, b) in [near(0.5), near(4.0), near(20.0), near(f32::INFINITY)] {
+                assert_eq!(a, b);
+            }
+            let partner = std::array::from_fn::<u8, LANES, _>(|_| (random() % 64) as u8);
+            let uses = std::array::from_fn::<EdgeUse, LANES, _>(|_| EdgeUse(random() as u32));
+            let mask = random() << 20 ^ random();
+            assert_eq!(
+                wide.permute(mask, &partner),
+                Portable.permute(mask, &partner)
+            );
+            for flip in [0, 1] {
+                let (mut a, mut b) = (vec![Quad::default()], vec![Quad::default()]);
+                wide.append(&uses, mask, flip, &mut a);
+                Portable.append(&uses, mask, flip, &mut b);
+                assert_eq!(a, b);
+            }
+        }
+    }
+}
