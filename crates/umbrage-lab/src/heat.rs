@@ -2,12 +2,12 @@
 
 use half::f16;
 use umbrage::frame::{FramePlan, LightPath};
-use umbrage::{Light, RendererOptions, ShadowRenderer, View, VolumeColor};
+use umbrage::{View, VolumeColor};
 
-use crate::gbuffer::{DEPTH_STENCIL, GBufferPass, Targets, texture};
+use crate::gbuffer::texture;
 use crate::gpu::GpuError;
-use crate::lab::{Lab, Method, light_pass};
-use crate::light_pass::{HDR, LightDraw, LightPass};
+use crate::lab::{Lab, Run, light_pass};
+use crate::light_pass::{HDR, LightDraw};
 use crate::readback::read_texture;
 use crate::stage::{Stage, StageLight};
 
@@ -25,34 +25,25 @@ pub enum Heat {
 }
 
 impl Lab {
-    /// Draws the last frame's volumes and lights as counts, one f32 a pixel.
+    /// Draws what `volumes` and `plan` hold as counts, one f32 a pixel.
     pub fn heat(
-        &mut self,
+        &self,
         stage: &Stage,
         lights: &[StageLight],
         view: &View,
-        method: Method,
         heat: Heat,
     ) -> Result<Vec<f32>, GpuError> {
-        self.prepare(stage, lights, view, method);
-        let mut total = vec![0.0; (view.size[0] * view.size[1]) as usize];
-        let draws: &[(VolumeColor, LightDraw)] = match heat {
-            Heat::Overdraw => &[(VolumeColor::Fragments, LightDraw::Nothing)],
-            Heat::Lights => &[(VolumeColor::None, LightDraw::Reach)],
-            Heat::Layers => &[(VolumeColor::Layers, LightDraw::Nothing)],
-            Heat::Cost => &[(VolumeColor::Fragments, LightDraw::One)],
+        let (volume_color, draw) = match heat {
+            Heat::Overdraw => (VolumeColor::Fragments, LightDraw::Nothing),
+            Heat::Lights => (VolumeColor::None, LightDraw::Reach),
+            Heat::Layers => (VolumeColor::Layers, LightDraw::Nothing),
+            Heat::Cost => (VolumeColor::Fragments, LightDraw::One),
         };
-        for &(volume, draw) in draws {
-            let counts = self.counts(stage, lights, view, volume, draw)?;
-            total
-                .iter_mut()
-                .zip(counts)
-                .for_each(|(sum, count)| *sum += count);
-        }
+        let mut counts = self.counts(stage, lights, view, volume_color, draw)?;
         if heat == Heat::Layers {
-            add_eye_counts(&self.plan, &mut total, view.size[0] as usize);
+            add_eye_counts(&self.plan, &mut counts, view.size[0] as usize);
         }
-        Ok(total)
+        Ok(counts)
     }
 
     fn counts(
@@ -64,27 +55,18 @@ impl Lab {
         draw: LightDraw,
     ) -> Result<Vec<f32>, GpuError> {
         let gpu = self.gpu();
-        let targets = Targets::new(gpu, view.size)?;
-        let mut shadows = ShadowRenderer::new(
-            &gpu.device,
-            &RendererOptions {
-                color_formats: &[Some(HDR)],
-                depth_stencil_format: DEPTH_STENCIL,
-                sample_count: 1,
-                depth_clamp: gpu.depth_clamp,
-                volume_color,
-            },
-        )?;
-        shadows.upload_world(&gpu.device, &stage.world)?;
-        let surface = GBufferPass::new(gpu, stage, &shadows)?;
-        let light = LightPass::new(gpu, &shadows, draw);
+        let Run {
+            targets,
+            mut shadows,
+            surface,
+            light,
+        } = self.run(stage, view, draw, volume_color)?;
         let binding = light.bind(gpu, &shadows, lights, &targets);
-        let plain: Vec<Light> = lights.iter().map(|l| l.light).collect();
         shadows.prepare(
             &gpu.device,
             &gpu.queue,
             view,
-            &plain,
+            &self.lights,
             &self.volumes,
             &self.plan,
         )?;

@@ -83,15 +83,15 @@ pub struct Lab {
     /// Times of the last frame.
     pub times: StageTimes,
     builder: VolumeBuilder,
-    lights: Vec<Light>,
+    pub(crate) lights: Vec<Light>,
 }
 
 /// Everything that depends on target formats or size, for one run.
-struct Run {
-    targets: Targets,
-    shadows: ShadowRenderer,
-    surface: GBufferPass,
-    light: LightPass,
+pub(crate) struct Run {
+    pub(crate) targets: Targets,
+    pub(crate) shadows: ShadowRenderer,
+    pub(crate) surface: GBufferPass,
+    pub(crate) light: LightPass,
 }
 
 impl Lab {
@@ -113,7 +113,7 @@ impl Lab {
         &self.gpu
     }
 
-    /// Builds volumes and plan for a view. [`Lab::shade`] and [`Lab::mask`] draw what stands in
+    /// Builds volumes and plan for a view. [`Lab::mask`] and [`Lab::heat`] draw what stands in
     /// `volumes` and `plan` then; a test may change them in between.
     pub fn prepare(&mut self, stage: &Stage, lights: &[StageLight], view: &View, method: Method) {
         let start = Instant::now();
@@ -140,7 +140,13 @@ impl Lab {
         self.times.plan = ms_since(start);
     }
 
-    fn run(&self, stage: &Stage, view: &View, draw: LightDraw) -> Result<Run, GpuError> {
+    pub(crate) fn run(
+        &self,
+        stage: &Stage,
+        view: &View,
+        draw: LightDraw,
+        volume_color: VolumeColor,
+    ) -> Result<Run, GpuError> {
         let targets = Targets::new(&self.gpu, view.size)?;
         let mut shadows = ShadowRenderer::new(
             &self.gpu.device,
@@ -149,7 +155,7 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
-                volume_color: VolumeColor::None,
+                volume_color,
             },
         )?;
         shadows.upload_world(&self.gpu.device, &stage.world)?;
@@ -173,22 +179,8 @@ impl Lab {
         method: Method,
         repeat: usize,
     ) -> Result<Lit, GpuError> {
-        self.shade(stage, lights, view, LightDraw::Shade, repeat, |lab| {
-            lab.prepare(stage, lights, view, method);
-        })
-    }
-
-    /// As [`Lab::render`], with `prepare` called before each frame and a choice of light draw.
-    pub fn shade(
-        &mut self,
-        stage: &Stage,
-        lights: &[StageLight],
-        view: &View,
-        draw: LightDraw,
-        repeat: usize,
-        mut prepare: impl FnMut(&mut Self),
-    ) -> Result<Lit, GpuError> {
-        let mut run = self.run(stage, view, draw)?;
+        let draw = LightDraw::Shade;
+        let mut run = self.run(stage, view, draw, VolumeColor::None)?;
         let hdr_usage = wgpu::TextureUsages::COPY_SRC;
         let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
         let binding = run
@@ -198,7 +190,7 @@ impl Lab {
         let mut all = Vec::new();
         for _ in 0..=repeat {
             let start = Instant::now();
-            prepare(self);
+            self.prepare(stage, lights, view, method);
             let upload = Instant::now();
             self.uploaded_bytes = run.shadows.prepare(
                 &self.gpu.device,
@@ -274,7 +266,7 @@ impl Lab {
         lights: &[StageLight],
         view: &View,
     ) -> Result<Mask, GpuError> {
-        let mut run = self.run(stage, view, LightDraw::Mark)?;
+        let mut run = self.run(stage, view, LightDraw::Mark, VolumeColor::None)?;
         let binding = run
             .light
             .bind(&self.gpu, &run.shadows, lights, &run.targets);

@@ -214,8 +214,8 @@ impl ShadowRenderer {
 
     /// Records the volumes of the plan's lights numbered `lights`, calling `draw_light` for each
     /// after its volume, with scissor and stencil reference set. `draw_light` must draw over the
-    /// whole scissor with [`ShadowRenderer::light_depth_stencil`], or call nothing at all for a
-    /// light whose volume is empty and whose pixels it does not want.
+    /// whole scissor with [`ShadowRenderer::light_depth_stencil`]: that is what leaves the stencil
+    /// clean for the next light.
     pub fn record(
         &self,
         pass: &mut RenderPass<'_>,

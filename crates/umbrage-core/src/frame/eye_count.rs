@@ -1,7 +1,7 @@
 //! How many casters stand between the light and the eye: where the z-pass count starts.
 //!
-//! Takes a world, a light with its chain and quads, and an eye; gives the number of chain triangles that the
-//! segment from light to eye crosses, or `Ambiguous` where the eye is so close to a side of the
+//! Takes a world, a light with its chain and quads, and an eye; gives the number of chain triangles
+//! that the segment from light to eye crosses, or `Ambiguous` where the eye is so close to a side of the
 //! volume that the GPU's rounding might put it on the other side.
 //!
 //! Crossings are decided by Shewchuk's exact `orient3d` with symbolic perturbation, so that a
