@@ -6,13 +6,16 @@
 //! is drawn. Positions are f32, relative to one f64 world origin.
 #![deny(unsafe_code)]
 
+pub mod cull;
 pub mod frame;
 mod lanes64;
 pub mod light;
 pub mod mesh;
+mod stamp;
 pub mod volume;
 pub mod world;
 
+pub use cull::{Cull, Culls};
 pub use frame::view::View;
 pub use light::{Light, LightShape};
 pub use mesh::{Casting, Mesh};

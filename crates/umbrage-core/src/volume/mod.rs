@@ -12,6 +12,7 @@ mod counter;
 mod crow;
 mod facing;
 mod plain;
+mod store;
 mod validate;
 
 pub use brute::brute;
@@ -21,4 +22,5 @@ pub use counter::counter;
 pub use crow::Crow;
 pub use facing::facing;
 pub use plain::plain_counter;
+pub use store::Version;
 pub use validate::{ClosureFault, check_closed};

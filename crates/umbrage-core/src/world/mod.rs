@@ -8,6 +8,7 @@ mod boxes;
 mod bvh;
 mod clusters;
 mod edges;
+mod objects;
 mod planes;
 mod query;
 mod subset;
@@ -23,8 +24,9 @@ pub use boxes::BoxCluster;
 pub use bvh::{Bvh, Node};
 pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
+pub use objects::{Extent, Object, ObjectError, ObjectId, Pose};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
-pub use query::{Reach, query};
+pub use query::{Layer, Reach, query};
 pub use subset::{Members, Subset};
 
 pub(crate) use planes::{FILTER, exact_side};
@@ -32,6 +34,7 @@ pub(crate) use subset::lanes;
 pub use validate::WorldFault;
 
 use crate::mesh::{Casting, Mesh};
+use crate::stamp;
 
 /// Why a mesh cannot become a world.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -116,7 +119,8 @@ pub struct BuildTimes {
     pub total: f64,
 }
 
-/// A world that lights can query. Immutable once built.
+/// A world that lights can query: fixed triangles, and objects that can be added, moved and
+/// removed. All arrays hold the fixed part first, then the objects.
 #[derive(Clone, Debug, Default)]
 pub struct World {
     /// Distinct positions, numbered by first use.
@@ -135,8 +139,16 @@ pub struct World {
     pub planes: Planes,
     /// Boxes of the triangles.
     pub boxes: Vec<BoxCluster>,
-    /// Boxes over ranges of triangles.
+    /// Boxes over ranges of triangles: a tree over the fixed ones, and a tree an object.
     pub bvh: Bvh,
+    /// The share of the fixed triangles.
+    pub fixed: Extent,
+    /// Slots for objects, free ones among them.
+    pub objects: Vec<Object>,
+    /// When the fixed part was built.
+    pub fixed_stamp: u64,
+    /// When the world last changed: two worlds with the same stamp are equal.
+    pub stamp: u64,
     /// What was found.
     pub report: WorldReport,
 }
@@ -192,8 +204,14 @@ impl World {
             planes,
             boxes,
             bvh,
+            fixed: Extent::default(),
+            objects: Vec::new(),
+            fixed_stamp: 0,
+            stamp: stamp::next(),
             report,
         };
+        world.fixed = world.whole();
+        world.fixed_stamp = world.stamp;
         world.report.bytes_per_triangle =
             world.bytes() as f64 / world.triangles.len().max(1) as f64;
         world.report.build_ms.total = start.elapsed().as_secs_f64() * 1e3;
@@ -202,6 +220,26 @@ impl World {
             panic!("World::build broke an invariant: {fault}");
         }
         Ok(world)
+    }
+
+    /// All that the arrays hold.
+    fn whole(&self) -> Extent {
+        Extent {
+            vertices: 0..self.positions.len() as u32,
+            triangles: 0..self.triangles.len() as u32,
+            edges: 0..self.edges.vertices.len() as u32,
+            nodes: 0..self.bvh.nodes.len() as u32,
+        }
+    }
+
+    /// The roots of the trees over one layer's triangles, in the order of the triangles.
+    pub fn roots(&self, layer: Layer) -> impl Iterator<Item = u32> {
+        let (fixed, objects) = match layer {
+            Layer::Fixed => (Some(&self.fixed), &[][..]),
+            Layer::Objects => (None, &self.objects[..]),
+        };
+        let extents = fixed.into_iter().chain(objects.iter().map(|o| &o.extent));
+        extents.filter_map(|extent| extent.nodes.clone().next())
     }
 
     /// The three corners of triangle `t`.
