@@ -12,3 +12,5 @@ pub mod picture;
 pub mod readback;
 pub mod seeded_lights;
 pub mod stage;
+
+pub use umbrage::{Cull, Culls, Uploaded};

@@ -10,7 +10,7 @@ use umbrage_core::Light;
 use umbrage_core::volume::{
     Chain, Crow, Quad, VolumeBuilder, Volumes, brute, counter, facing, plain_counter,
 };
-use umbrage_core::world::{Subset, World, query};
+use umbrage_core::world::{Layer, Subset, World, query};
 
 use crate::args::VolumesArgs;
 use crate::error::CliError;
@@ -171,7 +171,7 @@ fn all_lights(
     let mut sums = Sums::default();
     let start = Instant::now();
     for light in lights {
-        query(world, light, &mut shared.subset);
+        query(world, Layer::Fixed, light, &mut shared.subset);
         shared.chain.clear();
         facing(world, light, &shared.subset, &mut shared.chain);
         shared.quads.clear();
