@@ -6,6 +6,7 @@
 //! is drawn. Positions are f32, relative to one f64 world origin.
 #![deny(unsafe_code)]
 
+mod fingerprint;
 pub mod frame;
 mod lanes64;
 pub mod light;
@@ -13,6 +14,7 @@ pub mod mesh;
 pub mod volume;
 pub mod world;
 
+pub use fingerprint::Fingerprint;
 pub use frame::view::View;
 pub use light::{Light, LightShape};
 pub use mesh::{Casting, Mesh};

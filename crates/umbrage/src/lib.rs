@@ -57,8 +57,8 @@ pub use umbrage_core::frame::{
     self, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect, SkipReason, ZFailReason,
 };
 pub use umbrage_core::volume::{self, VolumeBuilder, Volumes};
-pub use umbrage_core::world::{self, World, WorldError, WorldReport};
-pub use umbrage_core::{Casting, Light, LightShape, Mesh, View};
+pub use umbrage_core::world::{self, SavedWorldError, World, WorldError, WorldReport};
+pub use umbrage_core::{Casting, Fingerprint, Light, LightShape, Mesh, View};
 pub use umbrage_wgpu::{
     CLIP_WGSL, LIGHT_STENCIL, RenderError, RendererOptions, ShadowRenderer, ViewUniform,
     VolumeColor,

@@ -4,7 +4,6 @@
 //! triangles, edges are numbered by first use in that order, and **edges hold no pointers to
 //! faces** (Aldridge and Woods 2004, section 2.3): triangles point to edges.
 
-#[allow(dead_code, reason = "saved worlds, the next change, map files")]
 mod array;
 mod boxes;
 mod bvh;
@@ -12,6 +11,7 @@ mod clusters;
 mod edges;
 mod planes;
 mod query;
+mod save;
 mod subset;
 mod validate;
 mod weld;
@@ -28,6 +28,7 @@ pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Reach, query};
+pub use save::SavedWorldError;
 pub use subset::{Members, Subset};
 
 pub(crate) use planes::{FILTER, exact_side};
@@ -120,7 +121,7 @@ pub struct BuildTimes {
 }
 
 /// A world that lights can query. Immutable once built.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct World {
     /// Distinct positions, numbered by first use.
     pub positions: Array<Vec3>,
