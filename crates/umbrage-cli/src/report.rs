@@ -105,6 +105,9 @@ pub(crate) struct InspectReport {
     pub(crate) bytes_per_triangle: f64,
     /// That the scene brings itself.
     pub(crate) lights: u64,
+    /// A `--world` file mapped, fingerprint and checksums included; null where it was built.
+    pub(crate) open_ms: Option<f64>,
+    /// Of a mapped world, `load` apart: when it was saved.
     pub(crate) build_ms: BuildMs,
 }
 

@@ -264,6 +264,60 @@ fn bad_input_exits_with_2_and_writes_nothing() {
     assert_eq!(folder.files(), before, "a refusal left something behind");
 }
 
+/// The first run saves, later ones map; what is not this scene's world is refused and left alone.
+#[test]
+fn a_world_is_kept_in_a_file() {
+    let folder = Folder::new("world");
+    let file = folder.path("soup.world");
+    let world = ["--world", file.as_str()];
+    let built = json(0, &[&["inspect", SOUP][..], &world].concat());
+    assert!(built["open_ms"].is_null());
+    assert_eq!(folder.files(), ["soup.world"]);
+    let saved = std::fs::read(&file).expect("the world");
+    let mut opened = json(0, &[&["inspect", SOUP][..], &world].concat());
+    assert!(opened["open_ms"].as_f64() > Some(0.0));
+    opened["open_ms"] = Value::Null;
+    opened["build_ms"] = built["build_ms"].clone();
+    assert_eq!(built, opened);
+
+    // Every verb that takes a scene maps it.
+    let [fresh, mapped] = [&[][..], &world].map(|world| {
+        let picture = folder.path("soup.png");
+        let render = ["render", SOUP, "-o", &picture, "--repeat", "1"];
+        json(0, &[&render[..], &SMALL, world].concat());
+        std::fs::read(picture).expect("a picture")
+    });
+    assert!(fresh == mapped, "the picture depends on --world");
+    let check = json(0, &[&["check", SOUP][..], &SMALL, &world].concat());
+    assert_eq!(check["wrong"], 0);
+    json(
+        0,
+        &[&["volumes", SOUP, "--repeat", "1"][..], &world].concat(),
+    );
+
+    let stale = refused(2, &[&["inspect", "gen:soup?seed=4"][..], &world].concat());
+    assert!(stale.contains(&file) && stale.contains("stale") && stale.contains("delete"));
+    let casters = ["check", SOUP, "--casters", "back"];
+    refused(2, &[&casters[..], &SMALL, &world].concat());
+    assert!(std::fs::read(&file).expect("the world") == saved, "changed");
+
+    let broken = folder.path("broken.world");
+    let mut bytes = saved;
+    bytes[4000] ^= 1;
+    std::fs::write(&broken, &bytes).expect("a broken world");
+    let damaged = refused(2, &["inspect", SOUP, "--world", &broken]);
+    assert!(
+        damaged.contains(&broken) && damaged.contains("damaged"),
+        "{damaged}"
+    );
+    std::fs::write(&broken, "a diary").expect("a diary");
+    let other = refused(2, &["inspect", SOUP, "--world", &broken]);
+    assert!(!other.contains("delete"), "{other}");
+    let nowhere = folder.path("no/such/folder.world");
+    let missing = refused(2, &["inspect", SOUP, "--world", &nowhere]);
+    assert!(missing.contains(&nowhere), "{missing}");
+}
+
 #[test]
 fn no_such_adapter_exits_with_3() {
     let folder = Folder::new("adapter");

@@ -3,15 +3,16 @@
 
 use std::time::Instant;
 
-use umbrage_core::world::World;
-use umbrage_core::{Casting, Mesh};
+use umbrage_core::Mesh;
+use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
+use umbrage_lab::stage::{StageError, casting};
 use umbrage_scene::Progress;
 
 use crate::args::InspectArgs;
 use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
-use crate::setting::use_threads;
+use crate::setting::{use_threads, world_step};
 use crate::table::Table;
 
 /// Loads, builds, counts.
@@ -23,16 +24,16 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let soup = scene.soup_at(args.common.world.origin.map(|point| point.0))?;
     let load = start.elapsed().as_secs_f64() * 1e3;
 
-    bar.stage("build world", 0);
+    let world_file = args.common.world.file.as_deref();
+    bar.stage(world_step(world_file), 0);
     // Every triangle counts here, whatever it casts.
-    let casting = vec![Casting::Both; soup.triangles.len()];
     let mesh = Mesh {
+        casting: casting(&scene, &soup, args.common.world.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
-        casting,
     };
-    let world = World::build(&mesh)
-        .map_err(|error| CliError::BadInput(format!("{}: {error}", args.scene)))?;
+    let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
+        .map_err(|error| StageError::new(&scene, world_file, error))?;
     drop(bar);
 
     let found = &world.report;
@@ -55,6 +56,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         duplicate_triangles: found.duplicate_triangles as u64,
         bytes_per_triangle: found.bytes_per_triangle,
         lights: scene.lights.len() as u64,
+        open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
             load,
             weld: times.weld,
@@ -89,8 +91,15 @@ fn table(report: &InspectReport) -> Table {
             &format!("{:.1}", report.bytes_per_triangle),
         ]);
     let times = &report.build_ms;
+    if let Some(ms) = report.open_ms {
+        table.row(["saved world opened", &format!("{ms:.1} ms")]);
+    }
+    let build = match report.open_ms {
+        Some(_) => "build, when it was saved",
+        None => "build",
+    };
     for (stage, ms) in [
-        ("build", times.total),
+        (build, times.total),
         ("  load", times.load),
         ("  weld", times.weld),
         ("  edges", times.edges),
