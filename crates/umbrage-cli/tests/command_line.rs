@@ -152,6 +152,16 @@ fn inspect_counts() {
          degenerate_triangles duplicate_triangles bytes_per_triangle lights build_ms",
     );
     assert_keys(&report["build_ms"], "load weld edges bvh order total");
+    let arrays = "positions triangles source casting edges sides clusters planes boxes bvh";
+    assert_keys(&report["memory"], arrays);
+    let memory = report["memory"].as_object().expect("arrays");
+    let sum: f64 = memory.values().filter_map(Value::as_f64).sum();
+    assert!((sum - report["bytes_per_triangle"].as_f64().expect("bytes")).abs() < 1e-6);
+    assert_eq!(report["memory"]["triangles"], 12.0);
+    assert_eq!(report["memory"]["edges"], 8.0 * 56.0 / 32.0);
+    // 8 bytes of faces and 4 of edge number an edge, 12 of edges a triangle.
+    let face_pointers = 12.0 + 12.0 * 56.0 / 32.0;
+    assert_eq!(report["face_pointer_bytes_per_triangle"], face_pointers);
     // 4 x 4 cells of two triangles: 2 * 4 * 5 + 16 edges, of which 16 are on the border.
     assert_eq!(report["triangles"], 32);
     assert_eq!(report["welded_vertices"], 25);

@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use umbrage_core::Mesh;
+use umbrage_core::volume::Crow;
 use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
 use umbrage_lab::stage::{StageError, casting};
 use umbrage_scene::Progress;
@@ -37,6 +38,8 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     drop(bar);
 
     let found = &world.report;
+    let per_triangle = |bytes: usize| bytes as f64 / found.triangles.max(1) as f64;
+    let memory = world.memory();
     let [one, two, three, more] = found.edges_by_triangles.map(|count| count as u64);
     let times = &found.build_ms;
     let report = InspectReport {
@@ -54,7 +57,12 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         opposite_wound_pairs: found.opposite_wound_pairs as u64,
         degenerate_triangles: found.degenerate_triangles as u64,
         duplicate_triangles: found.duplicate_triangles as u64,
-        bytes_per_triangle: found.bytes_per_triangle,
+        bytes_per_triangle: per_triangle(memory.total()),
+        memory: memory
+            .by_array()
+            .map(|(array, bytes)| (array, per_triangle(bytes)))
+            .into(),
+        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes()),
         lights: scene.lights.len() as u64,
         open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
@@ -85,11 +93,18 @@ fn table(report: &InspectReport) -> Table {
         .count("    wound alike along it", report.opposite_wound_pairs)
         .count("  of 3 triangles", edges.three)
         .count("  of 4 and more", edges.more)
-        .count("lights", report.lights)
-        .row([
-            "bytes per triangle",
-            &format!("{:.1}", report.bytes_per_triangle),
-        ]);
+        .count("lights", report.lights);
+    let mut bytes = |name: &str, bytes: f64| {
+        table.row([name, &format!("{bytes:.1}")]);
+    };
+    bytes("bytes per triangle", report.bytes_per_triangle);
+    for (array, &amount) in &report.memory {
+        bytes(&format!("  {array}"), amount);
+    }
+    bytes(
+        "face pointers, for sides and clusters",
+        report.face_pointer_bytes_per_triangle,
+    );
     let times = &report.build_ms;
     if let Some(ms) = report.open_ms {
         table.row(["saved world opened", &format!("{ms:.1} ms")]);

@@ -46,13 +46,6 @@ pub struct Bvh {
     pub nodes: Array<Node>,
 }
 
-impl Bvh {
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..])
-    }
-}
-
 struct Bounds(Aabb);
 
 impl Boundable for Bounds {

@@ -54,11 +54,6 @@ impl Edges {
             [a[lane], b[lane], c[lane]]
         }
     }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.vertices[..]) + size_of_val(&self.sides[..])
-    }
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -9,6 +9,7 @@ mod boxes;
 mod bvh;
 mod clusters;
 mod edges;
+mod memory;
 mod planes;
 mod query;
 mod save;
@@ -26,6 +27,7 @@ pub use boxes::BoxCluster;
 pub use bvh::{Bvh, Node};
 pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
+pub use memory::WorldMemory;
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Reach, query};
 pub use save::SavedWorldError;
@@ -212,19 +214,6 @@ impl World {
     #[inline]
     pub fn corners(&self, t: u32) -> [Vec3; 3] {
         self.triangles[t as usize].map(|v| self.positions[v as usize])
-    }
-
-    /// Bytes held by all arrays.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.positions[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.source[..])
-            + size_of_val(&self.casting[..])
-            + self.edges.bytes()
-            + size_of_val(&self.clusters[..])
-            + self.planes.bytes()
-            + size_of_val(&self.boxes[..])
-            + self.bvh.bytes()
     }
 }
 

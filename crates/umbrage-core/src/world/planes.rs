@@ -86,11 +86,6 @@ impl Planes {
         }
         exact_side(corners(), light.homogeneous)
     }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.clusters[..])
-    }
 }
 
 /// A light prepared for many side tests.
