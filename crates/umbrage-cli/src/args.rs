@@ -68,6 +68,8 @@ Examples:
       The scene's own lights, from its first camera, or one found automatically
   umbrage render model.obj --lights 256:7 --camera 4,2,8,0,1,0 -o model.png
       256 lights placed by seed 7, seen from (4, 2, 8) towards (0, 1, 0)
+  umbrage render map.glb --world map.world -o map.png
+      The first run saves the built world, the next ones map it
   umbrage render map.glb --heatmap overdraw -o heat.png --json - | jq .totals
       Where the fill goes, and the totals of the frame
   umbrage render map.glb --method none -o lit.png --json floor.json
@@ -99,6 +101,8 @@ pub(crate) struct InspectArgs {
 const INSPECT_EXAMPLES: &str = "\
 Nothing that is counted here is an error: open edges, edges of many triangles, opposite
 winding, degenerate and duplicate triangles all cast exact shadows.
+
+Blended triangles count too, so a scene with some needs a --world file of its own here.
 
 Examples:
   umbrage inspect map.glb
@@ -221,6 +225,10 @@ pub(crate) struct WorldArgs {
     /// precision [default: near the scene]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) origin: Option<Point>,
+    /// Keep the built world in this file: saved if it does not exist, else mapped, in milliseconds.
+    /// It holds for one scene, --casters and --origin; for others it is refused
+    #[arg(long = "world", value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
 }
 
 /// Where the eye is.

@@ -4,8 +4,10 @@ use std::fmt::Display;
 use std::path::Path;
 
 use thiserror::Error;
+use umbrage_core::world::SavedWorldError;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
+use umbrage_lab::stage::StageError;
 
 /// The one error of the command line. Wrong options never get here: clap reports them.
 #[derive(Debug, Error)]
@@ -40,6 +42,21 @@ impl CliError {
 impl From<umbrage_scene::SceneError> for CliError {
     fn from(error: umbrage_scene::SceneError) -> Self {
         CliError::BadInput(error.to_string())
+    }
+}
+
+impl From<StageError> for CliError {
+    fn from(error: StageError) -> Self {
+        let remedy = match &error {
+            // What is no world may be dear to someone, and what the system says is no fault of it.
+            StageError::SavedWorld {
+                error: SavedWorldError::NotASavedWorld | SavedWorldError::Io(_),
+                ..
+            } => "",
+            StageError::SavedWorld { .. } => ": delete the file, or name another with --world",
+            _ => "",
+        };
+        CliError::BadInput(format!("{error}{remedy}"))
     }
 }
 

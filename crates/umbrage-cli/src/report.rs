@@ -114,8 +114,16 @@ pub(crate) struct InspectReport {
     pub(crate) degenerate_triangles: u64,
     pub(crate) duplicate_triangles: u64,
     pub(crate) bytes_per_triangle: f64,
+    /// `bytes_per_triangle` by array of the world.
+    pub(crate) memory: BTreeMap<&'static str, f64>,
+    /// What edges that point to their faces take where `sides` and `clusters` stand here, a
+    /// triangle.
+    pub(crate) face_pointer_bytes_per_triangle: f64,
     /// That the scene brings itself.
     pub(crate) lights: u64,
+    /// A `--world` file mapped, fingerprint and checksums included; null where it was built.
+    pub(crate) open_ms: Option<f64>,
+    /// Of a mapped world, `load` apart: when it was saved.
     pub(crate) build_ms: BuildMs,
 }
 
@@ -257,7 +265,7 @@ mod tests {
             keys(&InspectReport::default()),
             "triangles vertices welded_vertices unique_edges edges_by_triangles \
              opposite_wound_pairs degenerate_triangles duplicate_triangles bytes_per_triangle \
-             lights build_ms",
+             memory face_pointer_bytes_per_triangle lights open_ms build_ms",
         );
         has(keys(&EdgesByTriangles::default()), "1 2 3 4+");
         has(keys(&BuildMs::default()), "load weld edges bvh order total");

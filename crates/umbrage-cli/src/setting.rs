@@ -4,6 +4,7 @@
 //! scene lacks (a camera, say) is refused here, with a list of what it has.
 
 use std::borrow::Cow;
+use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use umbrage_core::{Casting, Light, Mesh, View};
@@ -37,10 +38,11 @@ impl Setting {
         use_threads(common);
         let bar = Bar::new(common.results.quiet);
         let scene = umbrage_scene::open(scene, &bar)?;
-        bar.stage("build world", 0);
+        let world_file = common.world.file.as_deref();
+        bar.stage(world_step(world_file), 0);
         let origin = common.world.origin.map(|point| point.0);
-        let stage = Stage::new(scene, common.world.casters.into(), origin)
-            .map_err(|error| CliError::BadInput(error.to_string()))?;
+        let casters = common.world.casters.into();
+        let stage = Stage::with_world_file(scene, casters, origin, world_file)?;
         let plain = as_materials_say(&stage);
         bar.stage("place lights", 0);
         let lights = lights(&stage, &plain, &common.world)?;
@@ -51,6 +53,15 @@ impl Setting {
             lights,
             view,
         })
+    }
+}
+
+/// What `--world` makes of the step to a world, for those who wait.
+pub(crate) fn world_step(world_file: Option<&Path>) -> &'static str {
+    match world_file {
+        None => "build world",
+        Some(file) if file.exists() => "open saved world",
+        Some(_) => "build and save world",
     }
 }
 

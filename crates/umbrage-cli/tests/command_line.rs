@@ -152,6 +152,16 @@ fn inspect_counts() {
          degenerate_triangles duplicate_triangles bytes_per_triangle lights build_ms",
     );
     assert_keys(&report["build_ms"], "load weld edges bvh order total");
+    let arrays = "positions triangles source casting edges sides clusters planes boxes bvh";
+    assert_keys(&report["memory"], arrays);
+    let memory = report["memory"].as_object().expect("arrays");
+    let sum: f64 = memory.values().filter_map(Value::as_f64).sum();
+    assert!((sum - report["bytes_per_triangle"].as_f64().expect("bytes")).abs() < 1e-6);
+    assert_eq!(report["memory"]["triangles"], 12.0);
+    assert_eq!(report["memory"]["edges"], 8.0 * 56.0 / 32.0);
+    // 8 bytes of faces and 4 of edge number an edge, 12 of edges a triangle.
+    let face_pointers = 12.0 + 12.0 * 56.0 / 32.0;
+    assert_eq!(report["face_pointer_bytes_per_triangle"], face_pointers);
     // 4 x 4 cells of two triangles: 2 * 4 * 5 + 16 edges, of which 16 are on the border.
     assert_eq!(report["triangles"], 32);
     assert_eq!(report["welded_vertices"], 25);
@@ -262,6 +272,60 @@ fn bad_input_exits_with_2_and_writes_nothing() {
     refused(2, &["dance", SOUP]);
     refused(2, &[]);
     assert_eq!(folder.files(), before, "a refusal left something behind");
+}
+
+/// The first run saves, later ones map; what is not this scene's world is refused and left alone.
+#[test]
+fn a_world_is_kept_in_a_file() {
+    let folder = Folder::new("world");
+    let file = folder.path("soup.world");
+    let world = ["--world", file.as_str()];
+    let built = json(0, &[&["inspect", SOUP][..], &world].concat());
+    assert!(built["open_ms"].is_null());
+    assert_eq!(folder.files(), ["soup.world"]);
+    let saved = std::fs::read(&file).expect("the world");
+    let mut opened = json(0, &[&["inspect", SOUP][..], &world].concat());
+    assert!(opened["open_ms"].as_f64() > Some(0.0));
+    opened["open_ms"] = Value::Null;
+    opened["build_ms"] = built["build_ms"].clone();
+    assert_eq!(built, opened);
+
+    // Every verb that takes a scene maps it.
+    let [fresh, mapped] = [&[][..], &world].map(|world| {
+        let picture = folder.path("soup.png");
+        let render = ["render", SOUP, "-o", &picture, "--repeat", "1"];
+        json(0, &[&render[..], &SMALL, world].concat());
+        std::fs::read(picture).expect("a picture")
+    });
+    assert!(fresh == mapped, "the picture depends on --world");
+    let check = json(0, &[&["check", SOUP][..], &SMALL, &world].concat());
+    assert_eq!(check["wrong"], 0);
+    json(
+        0,
+        &[&["volumes", SOUP, "--repeat", "1"][..], &world].concat(),
+    );
+
+    let stale = refused(2, &[&["inspect", "gen:soup?seed=4"][..], &world].concat());
+    assert!(stale.contains(&file) && stale.contains("stale") && stale.contains("delete"));
+    let casters = ["check", SOUP, "--casters", "back"];
+    refused(2, &[&casters[..], &SMALL, &world].concat());
+    assert!(std::fs::read(&file).expect("the world") == saved, "changed");
+
+    let broken = folder.path("broken.world");
+    let mut bytes = saved;
+    bytes[4000] ^= 1;
+    std::fs::write(&broken, &bytes).expect("a broken world");
+    let damaged = refused(2, &["inspect", SOUP, "--world", &broken]);
+    assert!(
+        damaged.contains(&broken) && damaged.contains("damaged"),
+        "{damaged}"
+    );
+    std::fs::write(&broken, "a diary").expect("a diary");
+    let other = refused(2, &["inspect", SOUP, "--world", &broken]);
+    assert!(!other.contains("delete"), "{other}");
+    let nowhere = folder.path("no/such/folder.world");
+    let missing = refused(2, &["inspect", SOUP, "--world", &nowhere]);
+    assert!(missing.contains(&nowhere), "{missing}");
 }
 
 #[test]

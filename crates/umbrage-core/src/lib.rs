@@ -7,6 +7,7 @@
 #![deny(unsafe_code)]
 
 pub mod cull;
+mod fingerprint;
 pub mod frame;
 mod lanes64;
 pub mod light;
@@ -16,6 +17,7 @@ pub mod volume;
 pub mod world;
 
 pub use cull::{Cull, Culls};
+pub use fingerprint::Fingerprint;
 pub use frame::view::View;
 pub use light::{Light, LightShape};
 pub use mesh::{Casting, Mesh};

@@ -1,9 +1,10 @@
 //! Plain triangles, as a host hands them over.
 
+use bytemuck::{CheckedBitPattern, NoUninit};
 use glam::Vec3;
 
 /// Which sides of a triangle cast shadows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, CheckedBitPattern, NoUninit)]
 #[repr(u8)]
 pub enum Casting {
     /// Casts nothing.

@@ -152,12 +152,12 @@ fn validators_see_each_broken_invariant() {
         world.validate().unwrap_err()
     };
     assert!(matches!(
-        broken(&|w| w.casting.truncate(1)),
+        broken(&|w| w.casting.to_mut().truncate(1)),
         WorldFault::Length { .. }
     ));
     assert!(matches!(
         broken(&|w| {
-            let u = &mut w.edges.sides[0][1][3];
+            let u = &mut w.edges.sides.to_mut()[0][1][3];
             *u = EdgeUse::new(u.edge(), u.sign() > 0);
         }),
         WorldFault::EdgeUse {
@@ -169,27 +169,27 @@ fn validators_see_each_broken_invariant() {
     assert!(matches!(
         broken(&|w| {
             let [a, b] = w.edges.vertices[0];
-            w.edges.vertices.push([a, b]);
+            w.edges.vertices.to_mut().push([a, b]);
         }),
         WorldFault::EdgeNotUnique { .. }
     ));
     assert!(matches!(
-        broken(&|w| w.positions[5] = w.positions[4]),
+        broken(&|w| w.positions.to_mut()[5] = w.positions[4]),
         WorldFault::NotWelded { .. }
     ));
     assert!(matches!(
-        broken(&|w| w.clusters[0].sides[2].paired ^= 4),
+        broken(&|w| w.clusters.to_mut()[0].sides[2].paired ^= 4),
         WorldFault::Cluster {
             triangle: 2,
             side: 2
         }
     ));
     assert!(matches!(
-        broken(&|w| w.bvh.nodes[0].max.x -= 1.0),
+        broken(&|w| w.bvh.nodes.to_mut()[0].max.x -= 1.0),
         WorldFault::OutsideBox { node: 0, .. }
     ));
     assert!(matches!(
-        broken(&|w| w.bvh.nodes[0].count -= 1),
+        broken(&|w| w.bvh.nodes.to_mut()[0].count -= 1),
         WorldFault::Range { .. }
     ));
 }

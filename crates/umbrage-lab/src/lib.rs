@@ -10,6 +10,7 @@ pub mod lab;
 pub mod light_pass;
 pub mod picture;
 pub mod readback;
+pub mod saved_world;
 pub mod seeded_lights;
 pub mod stage;
 

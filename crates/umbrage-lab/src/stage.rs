@@ -1,11 +1,15 @@
 //! A loaded scene made ready: triangles with casting rules, a world, lights, and what shading
 //! needs.
 
+use std::path::{Path, PathBuf};
+
 use glam::{DVec3, Vec3};
 use thiserror::Error;
-use umbrage_core::world::{World, WorldError};
+use umbrage_core::world::{SavedWorldError, World, WorldError};
 use umbrage_core::{Casting, Light, LightShape, Mesh};
 use umbrage_scene::{AlphaMode, LightKind, Scene, SceneError, Soup};
+
+use crate::saved_world::{WorldFileError, open_or_build};
 
 /// Which casting rule the scene's casters follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +40,30 @@ pub enum StageError {
         /// What is wrong.
         error: WorldError,
     },
+    /// The file of its world.
+    #[error("{}: {error}", file.display())]
+    SavedWorld {
+        /// Its path.
+        file: PathBuf,
+        /// What is wrong.
+        error: SavedWorldError,
+    },
+}
+
+impl StageError {
+    /// Names what the error is about.
+    pub fn new(scene: &Scene, world_file: Option<&Path>, error: WorldFileError) -> Self {
+        match error {
+            WorldFileError::Build(error) => StageError::World {
+                scene: scene.name.clone(),
+                error,
+            },
+            WorldFileError::File(error) => StageError::SavedWorld {
+                file: world_file.unwrap_or(Path::new("")).to_owned(),
+                error,
+            },
+        }
+    }
 }
 
 /// A light with what the lab shades it by.
@@ -83,30 +111,27 @@ impl Stage {
     /// Flattens the scene and builds its world, with positions relative to `origin` or to the
     /// soup's own.
     pub fn new(scene: Scene, casters: Casters, origin: Option<DVec3>) -> Result<Self, StageError> {
+        Self::with_world_file(scene, casters, origin, None)
+    }
+
+    /// The same with the world mapped from `world_file` where that exists, else saved there.
+    pub fn with_world_file(
+        scene: Scene,
+        casters: Casters,
+        origin: Option<DVec3>,
+        world_file: Option<&Path>,
+    ) -> Result<Self, StageError> {
         let mut soup = scene.soup_at(origin)?;
         drop_blended(&scene, &mut soup);
-        let casting = soup
-            .material
-            .iter()
-            .map(|&m| {
-                let material = &scene.materials[m as usize];
-                match casters {
-                    Casters::Material if material.double_sided => Casting::Both,
-                    Casters::Material | Casters::Front => Casting::Front,
-                    Casters::Back => Casting::Back,
-                    Casters::Both => Casting::Both,
-                }
-            })
-            .collect();
         let mesh = Mesh {
             positions: soup.positions.clone(),
             triangles: soup.triangles.clone(),
-            casting,
+            casting: casting(&scene, &soup, casters),
         };
-        let world = World::build(&mesh).map_err(|error| StageError::World {
-            scene: scene.name.clone(),
-            error,
-        })?;
+        let world = match open_or_build(&mesh, world_file) {
+            Ok(found) => found.world,
+            Err(error) => return Err(StageError::new(&scene, world_file, error)),
+        };
         Ok(Self {
             scene,
             soup,
@@ -163,6 +188,17 @@ impl Stage {
             cos_inner,
         }
     }
+}
+
+/// One rule a triangle of the soup.
+pub fn casting(scene: &Scene, soup: &Soup, casters: Casters) -> Vec<Casting> {
+    let rule = |&material: &u32| match casters {
+        Casters::Material if scene.materials[material as usize].double_sided => Casting::Both,
+        Casters::Material | Casters::Front => Casting::Front,
+        Casters::Back => Casting::Back,
+        Casters::Both => Casting::Both,
+    };
+    soup.material.iter().map(rule).collect()
 }
 
 fn drop_blended(scene: &Scene, soup: &mut Soup) {

@@ -3,15 +3,17 @@
 
 use std::time::Instant;
 
-use umbrage_core::world::World;
-use umbrage_core::{Casting, Mesh};
+use umbrage_core::Mesh;
+use umbrage_core::volume::Crow;
+use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
+use umbrage_lab::stage::{StageError, casting};
 use umbrage_scene::Progress;
 
 use crate::args::InspectArgs;
 use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
-use crate::setting::use_threads;
+use crate::setting::{use_threads, world_step};
 use crate::table::Table;
 
 /// Loads, builds, counts.
@@ -23,19 +25,21 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let soup = scene.soup_at(args.common.world.origin.map(|point| point.0))?;
     let load = start.elapsed().as_secs_f64() * 1e3;
 
-    bar.stage("build world", 0);
+    let world_file = args.common.world.file.as_deref();
+    bar.stage(world_step(world_file), 0);
     // Every triangle counts here, whatever it casts.
-    let casting = vec![Casting::Both; soup.triangles.len()];
     let mesh = Mesh {
+        casting: casting(&scene, &soup, args.common.world.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
-        casting,
     };
-    let world = World::build(&mesh)
-        .map_err(|error| CliError::BadInput(format!("{}: {error}", args.scene)))?;
+    let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
+        .map_err(|error| StageError::new(&scene, world_file, error))?;
     drop(bar);
 
     let found = &world.report;
+    let per_triangle = |bytes: usize| bytes as f64 / found.triangles.max(1) as f64;
+    let memory = world.memory();
     let [one, two, three, more] = found.edges_by_triangles.map(|count| count as u64);
     let times = &found.build_ms;
     let report = InspectReport {
@@ -53,8 +57,14 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         opposite_wound_pairs: found.opposite_wound_pairs as u64,
         degenerate_triangles: found.degenerate_triangles as u64,
         duplicate_triangles: found.duplicate_triangles as u64,
-        bytes_per_triangle: found.bytes_per_triangle,
+        bytes_per_triangle: per_triangle(memory.total()),
+        memory: memory
+            .by_array()
+            .map(|(array, bytes)| (array, per_triangle(bytes)))
+            .into(),
+        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes()),
         lights: scene.lights.len() as u64,
+        open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
             load,
             weld: times.weld,
@@ -83,14 +93,28 @@ fn table(report: &InspectReport) -> Table {
         .count("    wound alike along it", report.opposite_wound_pairs)
         .count("  of 3 triangles", edges.three)
         .count("  of 4 and more", edges.more)
-        .count("lights", report.lights)
-        .row([
-            "bytes per triangle",
-            &format!("{:.1}", report.bytes_per_triangle),
-        ]);
+        .count("lights", report.lights);
+    let mut bytes = |name: &str, bytes: f64| {
+        table.row([name, &format!("{bytes:.1}")]);
+    };
+    bytes("bytes per triangle", report.bytes_per_triangle);
+    for (array, &amount) in &report.memory {
+        bytes(&format!("  {array}"), amount);
+    }
+    bytes(
+        "face pointers, for sides and clusters",
+        report.face_pointer_bytes_per_triangle,
+    );
     let times = &report.build_ms;
+    if let Some(ms) = report.open_ms {
+        table.row(["saved world opened", &format!("{ms:.1} ms")]);
+    }
+    let build = match report.open_ms {
+        Some(_) => "build, when it was saved",
+        None => "build",
+    };
     for (stage, ms) in [
-        ("build", times.total),
+        (build, times.total),
         ("  load", times.load),
         ("  weld", times.weld),
         ("  edges", times.edges),

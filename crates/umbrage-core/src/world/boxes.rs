@@ -1,12 +1,13 @@
 //! Boxes of single triangles, 64 at a time, for queries.
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use rayon::prelude::*;
 
 use super::clusters::LANES;
 
 /// Lower and upper corners of the boxes of 64 triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct BoxCluster {
     /// Lower x, y, z.

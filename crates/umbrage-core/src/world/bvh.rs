@@ -6,6 +6,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
+use super::array::Array;
 use crate::mesh::Mesh;
 
 /// A box over the triangles `first .. first + count`.
@@ -39,17 +40,10 @@ impl Node {
 }
 
 /// Nodes in depth-first order, the root first. Empty for an empty world.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
     /// Depth-first.
-    pub nodes: Vec<Node>,
-}
-
-impl Bvh {
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..])
-    }
+    pub nodes: Array<Node>,
 }
 
 struct Bounds(Aabb);
@@ -114,5 +108,6 @@ pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
             nodes[i].count = nodes[i + 1].count + nodes[nodes[i].second as usize].count;
         }
     }
+    let nodes = nodes.into();
     (Bvh { nodes }, order)
 }

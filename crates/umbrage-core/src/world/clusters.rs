@@ -6,6 +6,8 @@
 //! boundary is then bit arithmetic on 64-bit masks. No edge knows a face; the partner lane is one
 //! byte a side.
 
+use bytemuck::{Pod, Zeroable};
+
 use super::Edges;
 use crate::mesh::Casting;
 
@@ -13,7 +15,8 @@ use crate::mesh::Casting;
 pub const LANES: usize = 64;
 
 /// What the counter needs to know about 64 triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Cluster {
     /// Triangles that cast where their front faces the light.
     pub casts_front: u64,
@@ -24,7 +27,8 @@ pub struct Cluster {
 }
 
 /// One side of 64 triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
 pub struct ClusterSide {
     /// Lane of the partner, where there is one.
     pub partner: [u8; LANES],

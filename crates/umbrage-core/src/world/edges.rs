@@ -7,6 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use rdst::{RadixKey, RadixSort};
 
 use super::WorldReport;
+use super::array::Array;
 use super::clusters::LANES;
 
 /// One side of a triangle: which edge it is, and whether the triangle runs along it or against.
@@ -41,12 +42,12 @@ impl EdgeUse {
 }
 
 /// The edge table.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edges {
     /// Two vertices an edge, lower number first; edges are numbered by first use.
-    pub vertices: Vec<[u32; 2]>,
+    pub vertices: Array<[u32; 2]>,
     /// Edge uses, cluster after cluster: side (0,1) of its 64 triangles, then (1,2), then (2,0).
-    pub sides: Vec<[[EdgeUse; LANES]; 3]>,
+    pub sides: Array<[[EdgeUse; LANES]; 3]>,
 }
 
 impl Edges {
@@ -58,11 +59,6 @@ impl Edges {
             let [a, b, c] = &self.sides[t as usize / LANES];
             [a[lane], b[lane], c[lane]]
         }
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.vertices[..]) + size_of_val(&self.sides[..])
     }
 }
 
@@ -133,7 +129,10 @@ pub(super) fn unique_edges(triangles: &[[u32; 3]], report: &mut WorldReport) -> 
         }
     }
     report.duplicate_triangles = count_duplicates(triangles);
-    Edges { vertices, sides }
+    Edges {
+        vertices: vertices.into(),
+        sides: sides.into(),
+    }
 }
 
 fn ends(triangles: &[[u32; 3]], side: u32) -> (u32, u32) {

@@ -4,13 +4,16 @@
 //! triangles, edges are numbered by first use in that order, and **edges hold no pointers to
 //! faces** (Aldridge and Woods 2004, section 2.3): triangles point to edges.
 
+mod array;
 mod boxes;
 mod bvh;
 mod clusters;
 mod edges;
+mod memory;
 mod objects;
 mod planes;
 mod query;
+mod save;
 mod subset;
 mod validate;
 mod weld;
@@ -20,13 +23,16 @@ use std::time::Instant;
 use glam::Vec3;
 use thiserror::Error;
 
+pub use array::Array;
 pub use boxes::BoxCluster;
 pub use bvh::{Bvh, Node};
 pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
+pub use memory::WorldMemory;
 pub use objects::{Extent, Object, ObjectError, ObjectId, Pose};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Layer, Reach, query};
+pub use save::SavedWorldError;
 pub use subset::{Members, Subset};
 
 pub(crate) use planes::{FILTER, exact_side};
@@ -124,21 +130,21 @@ pub struct BuildTimes {
 #[derive(Clone, Debug, Default)]
 pub struct World {
     /// Distinct positions, numbered by first use.
-    pub positions: Vec<Vec3>,
+    pub positions: Array<Vec3>,
     /// Three vertices a triangle, as wound in the mesh, in BVH leaf order.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Array<[u32; 3]>,
     /// The triangle's number in the mesh it was built from.
-    pub source: Vec<u32>,
+    pub source: Array<u32>,
     /// One rule a triangle.
-    pub casting: Vec<Casting>,
+    pub casting: Array<Casting>,
     /// Unique edges and each triangle's use of them.
     pub edges: Edges,
     /// What the counter needs to know inside each 64 triangles.
-    pub clusters: Vec<Cluster>,
+    pub clusters: Array<Cluster>,
     /// Plane equations of the triangles.
     pub planes: Planes,
     /// Boxes of the triangles.
-    pub boxes: Vec<BoxCluster>,
+    pub boxes: Array<BoxCluster>,
     /// Boxes over ranges of triangles: a tree over the fixed ones, and a tree an object.
     pub bvh: Bvh,
     /// The share of the fixed triangles.
@@ -151,6 +157,28 @@ pub struct World {
     pub stamp: u64,
     /// What was found.
     pub report: WorldReport,
+}
+
+/// Of what is in them; when that changed does not count.
+impl PartialEq for World {
+    fn eq(&self, other: &Self) -> bool {
+        let places = |world: &Self| -> Vec<(Extent, [Vec3; 2])> {
+            let objects = world.objects.iter();
+            objects.map(|o| (o.extent.clone(), o.bounds)).collect()
+        };
+        self.positions == other.positions
+            && self.triangles == other.triangles
+            && self.source == other.source
+            && self.casting == other.casting
+            && self.edges == other.edges
+            && self.clusters == other.clusters
+            && self.planes == other.planes
+            && self.boxes == other.boxes
+            && self.bvh == other.bvh
+            && self.fixed == other.fixed
+            && places(self) == places(other)
+            && self.report == other.report
+    }
 }
 
 impl World {
@@ -195,23 +223,19 @@ impl World {
         report.build_ms.edges = clock.lap();
 
         let mut world = Self {
-            positions,
-            triangles,
-            source,
-            casting,
+            positions: positions.into(),
+            triangles: triangles.into(),
+            source: source.into(),
+            casting: casting.into(),
             edges,
-            clusters,
+            clusters: clusters.into(),
             planes,
-            boxes,
+            boxes: boxes.into(),
             bvh,
-            fixed: Extent::default(),
-            objects: Vec::new(),
-            fixed_stamp: 0,
-            stamp: stamp::next(),
             report,
-        };
-        world.fixed = world.whole();
-        world.fixed_stamp = world.stamp;
+            ..Self::default()
+        }
+        .without_objects();
         world.report.bytes_per_triangle =
             world.bytes() as f64 / world.triangles.len().max(1) as f64;
         world.report.build_ms.total = start.elapsed().as_secs_f64() * 1e3;
@@ -222,14 +246,17 @@ impl World {
         Ok(world)
     }
 
-    /// All that the arrays hold.
-    fn whole(&self) -> Extent {
-        Extent {
+    /// A new world, all of whose triangles are fixed.
+    fn without_objects(mut self) -> Self {
+        self.fixed = Extent {
             vertices: 0..self.positions.len() as u32,
             triangles: 0..self.triangles.len() as u32,
             edges: 0..self.edges.vertices.len() as u32,
             nodes: 0..self.bvh.nodes.len() as u32,
-        }
+        };
+        self.stamp = stamp::next();
+        self.fixed_stamp = self.stamp;
+        self
     }
 
     /// The roots of the trees over one layer's triangles, in the order of the triangles.
@@ -246,19 +273,6 @@ impl World {
     #[inline]
     pub fn corners(&self, t: u32) -> [Vec3; 3] {
         self.triangles[t as usize].map(|v| self.positions[v as usize])
-    }
-
-    /// Bytes held by all arrays.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.positions[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.source[..])
-            + size_of_val(&self.casting[..])
-            + self.edges.bytes()
-            + size_of_val(&self.clusters[..])
-            + self.planes.bytes()
-            + size_of_val(&self.boxes[..])
-            + self.bvh.bytes()
     }
 }
 

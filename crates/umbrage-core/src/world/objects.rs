@@ -11,7 +11,8 @@ use std::ops::Range;
 use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
-use super::{LANES, World, WorldError, boxes, planes};
+use super::array::Array;
+use super::{LANES, Node, World, WorldError, boxes, planes};
 use crate::mesh::{Casting, Mesh};
 use crate::stamp;
 
@@ -119,7 +120,8 @@ impl World {
         let rotation = pose.rotation.normalize();
         let posed = object.rest.iter().map(|p| placed(rotation, pose, *p));
         let first = object.extent.vertices.start as usize;
-        for (to, from) in self.positions[first..].iter_mut().zip(posed) {
+        let positions = &mut self.positions.to_mut()[first..];
+        for (to, from) in positions.iter_mut().zip(posed) {
             *to = from;
         }
         self.refit(slot);
@@ -139,8 +141,8 @@ impl World {
         object.changed = self.stamp;
         let triangles = as_usize(&object.room.triangles);
         object.extent = object.room.begin([0; 4]);
-        self.triangles[triangles.clone()].fill(PADDING);
-        self.casting[triangles].fill(Casting::None);
+        self.triangles.to_mut()[triangles.clone()].fill(PADDING);
+        self.casting.to_mut()[triangles].fill(Casting::None);
         Ok(())
     }
 
@@ -179,9 +181,11 @@ impl World {
             return slot;
         }
         let clusters = self.clusters.len();
-        self.triangles.resize(clusters * LANES, PADDING);
-        self.source.resize(clusters * LANES, u32::MAX);
-        self.casting.resize(clusters * LANES, Casting::None);
+        self.triangles.to_mut().resize(clusters * LANES, PADDING);
+        self.source.to_mut().resize(clusters * LANES, u32::MAX);
+        self.casting
+            .to_mut()
+            .resize(clusters * LANES, Casting::None);
         let after = |length: usize, more: usize| length as u32..(length + more) as u32;
         let room = Extent {
             vertices: after(self.positions.len(), part.positions.len()),
@@ -190,19 +194,30 @@ impl World {
             nodes: after(self.bvh.nodes.len(), part.bvh.nodes.len()),
         };
         self.positions
+            .to_mut()
             .resize(room.vertices.end as usize, Vec3::ZERO);
-        self.triangles.resize(room.triangles.end as usize, PADDING);
-        self.source.resize(room.triangles.end as usize, u32::MAX);
+        self.triangles
+            .to_mut()
+            .resize(room.triangles.end as usize, PADDING);
+        self.source
+            .to_mut()
+            .resize(room.triangles.end as usize, u32::MAX);
         self.casting
+            .to_mut()
             .resize(room.triangles.end as usize, Casting::None);
-        self.edges.vertices.resize(room.edges.end as usize, [0; 2]);
-        self.edges.sides.extend_from_slice(&part.edges.sides);
-        self.clusters.extend_from_slice(&part.clusters);
-        self.planes
-            .clusters
-            .extend_from_slice(&part.planes.clusters);
-        self.boxes.extend_from_slice(&part.boxes);
-        self.bvh.nodes.extend_from_slice(&part.bvh.nodes);
+        self.edges
+            .vertices
+            .to_mut()
+            .resize(room.edges.end as usize, [0; 2]);
+        self.edges
+            .sides
+            .to_mut()
+            .extend_from_slice(&part.edges.sides);
+        self.clusters.to_mut().extend_from_slice(&part.clusters);
+        let planes = self.planes.clusters.to_mut();
+        planes.extend_from_slice(&part.planes.clusters);
+        self.boxes.to_mut().extend_from_slice(&part.boxes);
+        self.bvh.nodes.to_mut().extend_from_slice(&part.bvh.nodes);
         self.objects.push(Object {
             extent: room.begin([0; 4]),
             room,
@@ -218,33 +233,29 @@ impl World {
     fn write_topology(&mut self, part: &World, slot: usize) {
         let extent = &self.objects[slot].extent;
         let [vertex, triangle, edge, node] = extent.starts();
-        let first = triangle as usize;
-        for (i, corners) in part.triangles.iter().enumerate() {
-            self.triangles[first + i] = corners.map(|v| v + vertex);
-            self.source[first + i] = part.source[i];
-            self.casting[first + i] = part.casting[i];
-        }
-        for (to, ends) in self.edges.vertices[edge as usize..]
-            .iter_mut()
-            .zip(part.edges.vertices.iter())
-        {
-            *to = ends.map(|v| v + vertex);
-        }
-        let cluster = first / LANES;
-        for (i, sides) in part.edges.sides.iter().enumerate() {
-            self.edges.sides[cluster + i] = sides.map(|side| side.map(|u| u.renumbered(edge)));
-            self.clusters[cluster + i] = part.clusters[i].clone();
-        }
-        for (to, from) in self.bvh.nodes[node as usize..]
-            .iter_mut()
-            .zip(part.bvh.nodes.iter())
-        {
-            *to = *from;
-            to.first += triangle;
-            if !from.is_leaf() {
-                to.second += node;
-            }
-        }
+        let from = |start: u32| start as usize;
+        let corners = part.triangles.iter().map(|t| t.map(|v| v + vertex));
+        write(&mut self.triangles, from(triangle), corners);
+        write(
+            &mut self.source,
+            from(triangle),
+            part.source.iter().copied(),
+        );
+        let casting = part.casting.iter().copied();
+        write(&mut self.casting, from(triangle), casting);
+        let ends = part.edges.vertices.iter().map(|e| e.map(|v| v + vertex));
+        write(&mut self.edges.vertices, from(edge), ends);
+        let cluster = from(triangle) / LANES;
+        let sides = part.edges.sides.iter();
+        let sides = sides.map(|sides| sides.map(|side| side.map(|u| u.renumbered(edge))));
+        write(&mut self.edges.sides, cluster, sides);
+        write(&mut self.clusters, cluster, part.clusters.iter().copied());
+        let nodes = part.bvh.nodes.iter().map(|n| Node {
+            first: n.first + triangle,
+            second: if n.is_leaf() { 0 } else { n.second + node },
+            ..*n
+        });
+        write(&mut self.bvh.nodes, from(node), nodes);
     }
 
     /// Planes, boxes and tree from the positions of an object.
@@ -253,8 +264,8 @@ impl World {
         let triangles = as_usize(&extent.triangles);
         for (i, chunk) in self.triangles[triangles.clone()].chunks(LANES).enumerate() {
             let cluster = triangles.start / LANES + i;
-            self.planes.clusters[cluster] = planes::plane_cluster(&self.positions, chunk);
-            self.boxes[cluster] = boxes::box_cluster(&self.positions, chunk);
+            self.planes.clusters.to_mut()[cluster] = planes::plane_cluster(&self.positions, chunk);
+            self.boxes.to_mut()[cluster] = boxes::box_cluster(&self.positions, chunk);
         }
         for i in as_usize(&extent.nodes).rev() {
             let node = self.bvh.nodes[i];
@@ -267,7 +278,7 @@ impl World {
                 let [a, b] = [self.bvh.nodes[i + 1], self.bvh.nodes[node.second as usize]];
                 (a.min.min(b.min), a.max.max(b.max))
             };
-            let node = &mut self.bvh.nodes[i];
+            let node = &mut self.bvh.nodes.to_mut()[i];
             (node.min, node.max) = (min, max);
         }
         let root = extent.nodes.clone().next();
@@ -305,6 +316,13 @@ impl Extent {
             self.edges.start,
             self.nodes.start,
         ]
+    }
+}
+
+/// Writes items one after the other from place `first` on.
+fn write<T: Clone>(array: &mut Array<T>, first: usize, items: impl Iterator<Item = T>) {
+    for (to, item) in array.to_mut()[first..].iter_mut().zip(items) {
+        *to = item;
     }
 }
 

@@ -12,10 +12,12 @@
 //! direction, or the plane is stored as zero and every query goes to the exact test. Together less
 //! than `6 u m`; the filter uses `8 u m = 2^-21 m`.
 
+use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
+use super::array::Array;
 use super::clusters::LANES;
 use crate::light::Light;
 
@@ -23,7 +25,7 @@ use crate::light::Light;
 pub type Side = i8;
 
 /// Plane equations `n.x - d` of 64 triangles, positive in front.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct PlaneCluster {
     /// x of the unit normal.
@@ -37,10 +39,10 @@ pub struct PlaneCluster {
 }
 
 /// Plane equations, cluster after cluster.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Planes {
     /// The last may be partly empty: zero planes.
-    pub clusters: Vec<PlaneCluster>,
+    pub clusters: Array<PlaneCluster>,
 }
 
 pub(crate) const FILTER: f32 = 1.0 / (1 << 21) as f32;
@@ -49,8 +51,9 @@ impl Planes {
     /// Planes of counter-clockwise triangles.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let cluster = |triangles: &[[u32; 3]]| plane_cluster(positions, triangles);
+        let planes: Vec<PlaneCluster> = triangles.par_chunks(LANES).map(cluster).collect();
         Self {
-            clusters: triangles.par_chunks(LANES).map(cluster).collect(),
+            clusters: planes.into(),
         }
     }
 
@@ -66,11 +69,6 @@ impl Planes {
             return if s > 0.0 { 1 } else { -1 };
         }
         exact_side(corners(), light.homogeneous)
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.clusters[..])
     }
 }
 

@@ -1,0 +1,266 @@
+//! A [`World`] to a file, and the file mapped back as a `World`.
+//!
+//! The file holds the arrays as they are in memory, so that opening copies nothing: it checks a
+//! checksum an array and, in one pass, that no number points outside. A file from another version,
+//! another mesh or another kind of machine is refused, never repaired: building is the repair.
+
+mod bounds;
+mod layout;
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use bytemuck::{CheckedBitPattern, NoUninit};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use self::layout::{
+    ALIGNMENT, BYTE_ORDER, Contents, Head, MAGIC, Placed, Preamble, Section, VERSION,
+};
+use super::array::{Array, MappedFile};
+use super::{Bvh, Edges, Extent, LANES, Planes, World};
+use crate::fingerprint::{Fingerprint, checksum};
+
+/// Why a file cannot be opened as a world, or a world not be saved.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SavedWorldError {
+    /// It does not begin as saved worlds do.
+    #[error("not a saved world: choose another file")]
+    NotASavedWorld,
+    /// Written on a machine that stores numbers the other way round.
+    #[error("saved on a machine with another byte order: build the world here and save it again")]
+    OtherByteOrder,
+    /// Another version of the format.
+    #[error(
+        "saved in format {found}, this is format {expected}: build the world and save it again"
+    )]
+    OtherVersion {
+        /// In the file.
+        found: u32,
+        /// The only one that is read.
+        expected: u32,
+    },
+    /// Shorter or longer than it says.
+    #[error("{found} bytes of {expected}: incomplete; build the world and save it again")]
+    Truncated {
+        /// Bytes in the file.
+        found: u64,
+        /// Bytes it should have.
+        expected: u64,
+    },
+    /// A checksum does not match.
+    #[error("damaged in its {section}: build the world and save it again")]
+    Damaged {
+        /// Array, or "head".
+        section: &'static str,
+    },
+    /// Made from another mesh.
+    #[error(
+        "stale: made from other triangles, casting rules or origin; \
+         build the world and save it again"
+    )]
+    Stale,
+    /// Whole, but not a world: something points outside.
+    #[error("{section}[{item}] is not valid in a world: build the world and save it again")]
+    Invalid {
+        /// Array.
+        section: &'static str,
+        /// Index into it.
+        item: usize,
+    },
+    /// What the system says.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+}
+
+impl World {
+    /// Writes the world without its objects to `path`, whole or not at all; [`World::open`] asks for the same
+    /// `fingerprint`, which is that of the mesh it was built from.
+    ///
+    /// # Errors
+    /// [`SavedWorldError::Io`].
+    pub fn save(&self, path: &Path, fingerprint: Fingerprint) -> Result<(), SavedWorldError> {
+        let Extent {
+            vertices,
+            triangles,
+            edges,
+            nodes,
+        } = &self.fixed;
+        let [vertices, triangles, edges, nodes] =
+            [vertices, triangles, edges, nodes].map(|r| r.end as usize);
+        let clusters = triangles.div_ceil(LANES);
+        let arrays: [(&[u8], usize); Section::ALL.len()] = [
+            bytes(&self.positions[..vertices]),
+            bytes(&self.triangles[..triangles]),
+            bytes(&self.source[..triangles]),
+            bytes(&self.casting[..triangles]),
+            bytes(&self.edges.vertices[..edges]),
+            bytes(&self.edges.sides[..clusters]),
+            bytes(&self.clusters[..clusters]),
+            bytes(&self.planes.clusters[..clusters]),
+            bytes(&self.boxes[..clusters]),
+            bytes(&self.bvh.nodes[..nodes]),
+        ];
+        let mut end = size_of::<Head>();
+        let sections = arrays.map(|(bytes, element)| {
+            let offset = end.next_multiple_of(ALIGNMENT);
+            end = offset + bytes.len();
+            Placed {
+                offset: offset as u64,
+                bytes: bytes.len() as u64,
+                element_bytes: element as u64,
+                checksum: checksum(bytes),
+            }
+        });
+        let head = Head::new(Contents {
+            file_bytes: end as u64,
+            fingerprint,
+            sections,
+            report: (&self.report).into(),
+        });
+        write_whole(path, |file| {
+            file.write_all(bytemuck::bytes_of(&head))?;
+            let mut at = size_of::<Head>();
+            for (bytes, _) in arrays {
+                let gap = at.next_multiple_of(ALIGNMENT) - at;
+                file.write_all(&[0; ALIGNMENT][..gap])?;
+                file.write_all(bytes)?;
+                at += gap + bytes.len();
+            }
+            Ok(())
+        })?;
+        Ok(())
+    }
+
+    /// Maps a world that was saved with the same `fingerprint`, in milliseconds for a million
+    /// triangles. The file must not be changed in place while the world or a clone of it lives;
+    /// saving over it is safe, since that replaces the file.
+    ///
+    /// # Errors
+    /// Anything but an undamaged world of this format and this mesh is refused.
+    pub fn open(path: &Path, fingerprint: Fingerprint) -> Result<Self, SavedWorldError> {
+        let file = File::open(path)?;
+        if file.metadata()?.len() < size_of::<Preamble>() as u64 {
+            return Err(SavedWorldError::NotASavedWorld);
+        }
+        let file = MappedFile::new(&file)?;
+        let contents = contents(file.bytes())?;
+        if contents.fingerprint != fingerprint {
+            return Err(SavedWorldError::Stale);
+        }
+        let sections = Section::ALL.into_par_iter();
+        sections.try_for_each(|section| verify(&file, &contents, section))?;
+        let world = Self {
+            positions: array(&file, &contents, Section::Positions)?,
+            triangles: array(&file, &contents, Section::Triangles)?,
+            source: array(&file, &contents, Section::Source)?,
+            casting: array(&file, &contents, Section::Casting)?,
+            edges: Edges {
+                vertices: array(&file, &contents, Section::Edges)?,
+                sides: array(&file, &contents, Section::Sides)?,
+            },
+            clusters: array(&file, &contents, Section::Clusters)?,
+            planes: Planes {
+                clusters: array(&file, &contents, Section::Planes)?,
+            },
+            boxes: array(&file, &contents, Section::Boxes)?,
+            bvh: Bvh {
+                nodes: array(&file, &contents, Section::Nodes)?,
+            },
+            report: (&contents.report).into(),
+            ..Self::default()
+        };
+        bounds::check(&world, fingerprint.triangles())?;
+        Ok(world.without_objects())
+    }
+}
+
+/// The bytes of an array, and of one element.
+fn bytes<T: NoUninit>(array: &[T]) -> (&[u8], usize) {
+    (bytemuck::cast_slice(array), size_of::<T>())
+}
+
+/// The head of a file, if the file is what it says.
+fn contents(file: &[u8]) -> Result<Contents, SavedWorldError> {
+    let preamble: Preamble = read(file).ok_or(SavedWorldError::NotASavedWorld)?;
+    if preamble.magic != MAGIC {
+        return Err(SavedWorldError::NotASavedWorld);
+    }
+    if preamble.byte_order != BYTE_ORDER {
+        return Err(SavedWorldError::OtherByteOrder);
+    }
+    if preamble.version != VERSION {
+        return Err(SavedWorldError::OtherVersion {
+            found: preamble.version,
+            expected: VERSION,
+        });
+    }
+    let truncated = |expected| SavedWorldError::Truncated {
+        found: file.len() as u64,
+        expected,
+    };
+    let head: Head = read(file).ok_or(truncated(size_of::<Head>() as u64))?;
+    if head.checksum != checksum(bytemuck::bytes_of(&head.contents)) {
+        return Err(SavedWorldError::Damaged { section: "head" });
+    }
+    if head.contents.file_bytes != file.len() as u64 {
+        return Err(truncated(head.contents.file_bytes));
+    }
+    Ok(head.contents)
+}
+
+fn read<T: bytemuck::AnyBitPattern>(file: &[u8]) -> Option<T> {
+    file.get(..size_of::<T>()).map(bytemuck::pod_read_unaligned)
+}
+
+/// Where an array stands in the file; `None` if it leaves it.
+fn range(contents: &Contents, section: Section) -> Option<std::ops::Range<usize>> {
+    let placed = &contents.sections[section as usize];
+    let start = usize::try_from(placed.offset).ok()?;
+    let length = usize::try_from(placed.bytes).ok()?;
+    Some(start..start.checked_add(length)?)
+}
+
+fn verify(file: &MappedFile, contents: &Contents, section: Section) -> Result<(), SavedWorldError> {
+    let bytes = range(contents, section).and_then(|range| file.bytes().get(range));
+    let expected = contents.sections[section as usize].checksum;
+    if bytes.is_some_and(|bytes| checksum(bytes) == expected) {
+        return Ok(());
+    }
+    Err(SavedWorldError::Damaged {
+        section: section.name(),
+    })
+}
+
+fn array<T: CheckedBitPattern>(
+    file: &MappedFile,
+    contents: &Contents,
+    section: Section,
+) -> Result<Array<T>, SavedWorldError> {
+    let fits = contents.sections[section as usize].element_bytes == size_of::<T>() as u64;
+    range(contents, section)
+        .filter(|_| fits)
+        .and_then(|range| file.array(range))
+        .ok_or(SavedWorldError::Invalid {
+            section: section.name(),
+            item: 0,
+        })
+}
+
+/// Lets `fill` write a file under another name beside `path`, then renames it.
+fn write_whole(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut part = path.as_os_str().to_owned();
+    part.push(format!(".{}.part", std::process::id()));
+    let part = PathBuf::from(part);
+    let write = || {
+        let mut file = BufWriter::new(File::create(&part)?);
+        fill(&mut file)?;
+        file.into_inner()?.sync_all()?;
+        fs::rename(&part, path)
+    };
+    write().inspect_err(|_| {
+        let _ = fs::remove_file(&part); // it may not exist; the first error matters
+    })
+}
