@@ -11,7 +11,9 @@ mod chain;
 mod counter;
 mod crow;
 mod facing;
+mod hidden;
 mod plain;
+mod range;
 mod validate;
 
 pub use brute::brute;
@@ -20,5 +22,7 @@ pub use chain::{Chain, ChainTriangle, Quad};
 pub use counter::counter;
 pub use crow::Crow;
 pub use facing::facing;
+pub use hidden::{HiddenScratch, drop_hidden};
 pub use plain::plain_counter;
+pub use range::{QuadRange, QuadReach, RangePrefix, range_first};
 pub use validate::{ClosureFault, check_closed};
