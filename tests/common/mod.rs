@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glam::{DAffine3, Vec3};
 use umbrage_core::frame::{FramePlan, LightPath};
+use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, LightShape, View};
 use umbrage_lab::gpu::{AdapterChoice, Gpu};
 use umbrage_lab::lab::{Lab, Method};
@@ -157,6 +158,8 @@ pub(crate) fn check_changed(
         change(&mut lab);
         let mask = lab.mask(&site.stage, lights, view);
         let closed = lab.volumes.check_closed(&site.stage.world).is_ok();
+        // Nothing changed by hand is kept.
+        lab.volumes = Volumes::default();
         (
             mask.expect("the mask can be drawn and read"),
             lab.plan.clone(),

@@ -203,7 +203,25 @@ pub(crate) struct VolumesReport {
     pub(crate) subset_triangles: u64,
     /// The library's own build of all lights on all threads.
     pub(crate) parallel_ms_total: f64,
+    /// The same on one.
+    pub(crate) serial_ms_total: f64,
     pub(crate) methods: Vec<VolumesMethod>,
+    pub(crate) lights_detail: Vec<VolumesLight>,
+}
+
+/// One light, by every method.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct VolumesLight {
+    pub(crate) name: String,
+    /// point, spot or directional.
+    pub(crate) kind: String,
+    pub(crate) subset_triangles: u64,
+    /// Casters by name of the method.
+    pub(crate) facing_triangles: BTreeMap<String, u64>,
+    /// By name of the method.
+    pub(crate) quads: BTreeMap<String, u64>,
+    /// Microseconds for query, facing and quads, by name of the method.
+    pub(crate) build_us: BTreeMap<String, f64>,
 }
 
 /// One method over all lights: query, facing and quads.
@@ -213,6 +231,10 @@ pub(crate) struct VolumesMethod {
     pub(crate) ms_total: f64,
     pub(crate) ns_per_triangle: f64,
     pub(crate) quads: u64,
+    /// Mean over all lights.
+    pub(crate) quads_per_light: f64,
+    /// Mean over point and spot lights; 0 if there are none.
+    pub(crate) quads_per_local_light: f64,
     /// Light and dark caps, if drawn.
     pub(crate) cap_triangles: u64,
     /// Quads and cap triangles.
@@ -277,6 +299,10 @@ mod tests {
         has(
             keys(&VolumesReport::default()),
             "scene lights threads subset_triangles methods",
+        );
+        has(
+            keys(&VolumesLight::default()),
+            "name kind subset_triangles facing_triangles quads build_us",
         );
         has(
             keys(&VolumesMethod::default()),

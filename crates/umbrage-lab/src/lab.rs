@@ -200,7 +200,7 @@ impl Lab {
                 |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
             self.builder.culls = culls;
             self.builder
-                .build(&stage.world, &self.lights, in_view, &mut self.volumes);
+                .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         }
         self.times.volumes = ms_since(start);
         let start = Instant::now();

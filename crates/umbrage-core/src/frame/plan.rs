@@ -199,6 +199,12 @@ impl FramePlan {
                     .extend(triangles.filter(|t| t.coefficient() == coefficient));
                 first..self.caps.len() as u32
             });
+            let mut quads = volume.quads.clone();
+            // Behind a surface, where z-fail counts, the ray leaves the range.
+            if matches!(path, LightPath::ZPass { .. }) && options.culls.has(Cull::Range) {
+                let all = quads.len() as u32;
+                quads.end = quads.start + volume.in_range.for_eye(light, view.eye, all);
+            }
             self.lights.push(LightPlan {
                 stencil_reference: match path {
                     // Lit where eye count + sides crossed is 0; stencil arithmetic is modulo 256.
@@ -207,7 +213,7 @@ impl FramePlan {
                 },
                 path,
                 scissor,
-                quads: volume.quads.clone(),
+                quads,
                 caps,
                 reversed_caps,
             });

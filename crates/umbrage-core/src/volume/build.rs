@@ -2,9 +2,10 @@
 //!
 //! Takes a world and lights; brings [`Volumes`] up to date. They do not depend on the eye, so that
 //! several views share them. A light is built again only if it changed, or if the geometry in its
-//! range did; where only objects moved, what its fixed triangles cast is kept. Lights are built in
-//! chunks whose results are stored in the order of the lights, so the outcome is the same whatever
-//! the number of threads.
+//! range did; where only objects moved, what its fixed triangles cast is kept. Casters hidden behind
+//! others are looked for once a light stands still, as many at a time as the host allows. Lights are
+//! built in chunks whose results are stored in the order of the lights, so the outcome is the same
+//! whatever the number of threads.
 
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +14,10 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::store::{Block, Store, Version};
-use super::{Chain, ChainTriangle, ClosureFault, Quad, check_closed, counter, facing};
+use super::{
+    Chain, ChainTriangle, ClosureFault, HiddenScratch, Quad, RangePrefix, check_closed, counter,
+    drop_hidden, facing, range_first,
+};
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
 use crate::stamp;
@@ -29,6 +33,8 @@ pub struct LightVolume {
     pub facing_triangles: u32,
     /// Its silhouette quads, in [`Volumes::quads`].
     pub quads: Range<u32>,
+    /// How many of them an eye in its range has to draw.
+    pub in_range: RangePrefix,
     /// Its chain, in [`Volumes::chains`]; objects' triangles come last.
     pub chain: Range<u32>,
     /// When it was built: the same stamp means the same volume.
@@ -40,6 +46,9 @@ pub struct LightVolume {
 }
 
 /// The volumes of all lights, and what they were built from.
+///
+/// What is built is kept: whoever changes quads or chains by hand starts the next build from a new
+/// one.
 #[derive(Clone, Debug, Default)]
 pub struct Volumes {
     /// One entry a light.
@@ -59,15 +68,34 @@ pub struct Volumes {
 #[derive(Clone, Debug, Default)]
 struct Key {
     light: Option<Light>,
-    /// What its fixed triangles cast is right.
-    fixed: bool,
-    /// So is what objects cast.
+    fixed: Fixed,
+    /// What objects cast is right.
     objects: bool,
     /// Length of the fixed triangles' part of its chain, and of their subset.
     fixed_chain: u32,
     fixed_subset: u32,
     quads: Block,
     chain: Block,
+}
+
+/// What is known of what a light's fixed triangles cast.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Fixed {
+    /// Nothing.
+    #[default]
+    Stale,
+    /// It is right, with hidden casters in it.
+    Plain,
+    /// It is right, and final.
+    Settled,
+}
+
+/// One light to build.
+#[derive(Clone, Copy, Debug)]
+struct Job {
+    number: usize,
+    /// Look for hidden casters.
+    hide: bool,
 }
 
 /// The world as it was at the last build.
@@ -80,10 +108,13 @@ struct Seen {
 }
 
 /// Builds volumes; keeps the scratch memory between builds.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct VolumeBuilder {
     /// Which steps skip work. Changing them rebuilds what they change.
     pub culls: Culls,
+    /// Casters among which one [`VolumeBuilder::build`] looks for hidden ones: what it may spend on
+    /// lights that came to rest. Some 0.3 microseconds each.
+    pub hidden_budget: u32,
     scratch: Mutex<Vec<Scratch>>,
     chunks: Vec<Built>,
 }
@@ -92,8 +123,10 @@ pub struct VolumeBuilder {
 #[derive(Debug, Default)]
 struct Scratch {
     subset: Subset,
+    chain: Vec<Chain>,
     touched: Vec<Quad>,
     counters: Vec<i32>,
+    hidden: HiddenScratch,
 }
 
 /// What one chunk of lights became.
@@ -106,18 +139,30 @@ struct Built {
     chains: Vec<Chain>,
 }
 
+impl Default for VolumeBuilder {
+    fn default() -> Self {
+        Self::new(Culls::EVERY)
+    }
+}
+
 impl VolumeBuilder {
-    /// Keeps scratch memory, skips what `culls` say.
+    /// Skips what `culls` say.
     pub fn new(culls: Culls) -> Self {
         Self {
             culls,
-            ..Self::default()
+            hidden_budget: 1 << 14,
+            scratch: Mutex::default(),
+            chunks: Vec::new(),
         }
     }
 
     /// Brings `volumes` up to date with the world and the lights. A light is known by its place in
     /// the list. Lights for which `wanted` is false and whose volume is not there already get an
     /// empty one, until they are wanted. Gives the number of lights built.
+    ///
+    /// A light that came to rest is built once more, without its hidden casters, by one of the next
+    /// calls; one with more casters than [`VolumeBuilder::hidden_budget`] waits for
+    /// [`VolumeBuilder::settle`].
     pub fn build(
         &mut self,
         world: &World,
@@ -126,39 +171,57 @@ impl VolumeBuilder {
         volumes: &mut Volumes,
     ) -> usize {
         volumes.forget_changes(world, lights, self.culls);
-        let stale: Vec<usize> = (0..lights.len())
-            .filter(|&i| volumes.keys[i].is_stale() && wanted(&lights[i]))
-            .collect();
-        let length = (stale.len() / (8 * rayon::current_num_threads())).clamp(1, 16);
-        let chunk_count = stale.len().div_ceil(length);
+        let jobs = volumes.jobs(lights, wanted, Some(self.hidden_budget));
+        self.work(world, lights, &jobs, volumes);
+        jobs.len()
+    }
+
+    /// As [`VolumeBuilder::build`], and finishes what further calls would do: for loading screens,
+    /// tools, and lights that will not move.
+    pub fn settle(
+        &mut self,
+        world: &World,
+        lights: &[Light],
+        wanted: impl Fn(&Light) -> bool + Sync,
+        volumes: &mut Volumes,
+    ) -> usize {
+        volumes.forget_changes(world, lights, self.culls);
+        let jobs = volumes.jobs(lights, wanted, None);
+        self.work(world, lights, &jobs, volumes);
+        jobs.len()
+    }
+
+    fn work(&mut self, world: &World, lights: &[Light], jobs: &[Job], volumes: &mut Volumes) {
+        let length = (jobs.len() / (8 * rayon::current_num_threads())).clamp(1, 16);
+        let chunk_count = jobs.len().div_ceil(length);
         self.chunks
             .resize_with(chunk_count.max(self.chunks.len()), Built::default);
         let (pool, old) = (&self.scratch, &*volumes);
-        let build_chunk = |out: &mut Built, numbers: &[usize]| {
+        let build_chunk = |out: &mut Built, jobs: &[Job]| {
             let mut scratch = lock(pool).pop().unwrap_or_default();
             scratch.counters.resize(world.edges.vertices.len(), 0);
             out.clear();
-            for &number in numbers {
-                let fixed = old.kept_fixed(number);
-                build_one(world, &lights[number], fixed, &mut scratch, out);
+            for job in jobs {
+                let (light, kept) = (&lights[job.number], old.kept_fixed(job.number));
+                let hide = job.hide && old.culls.has(Cull::Hidden);
+                build_one(world, light, kept, hide, &mut scratch, out);
             }
             lock(pool).push(scratch);
         };
-        match (&mut self.chunks[..chunk_count], &stale[..]) {
-            ([chunk], stale) => build_chunk(chunk, stale),
-            (chunks, stale) => chunks
+        match (&mut self.chunks[..chunk_count], jobs) {
+            ([chunk], jobs) => build_chunk(chunk, jobs),
+            (chunks, jobs) => chunks
                 .par_iter_mut()
-                .zip(stale.par_chunks(length))
-                .for_each(|(out, numbers)| build_chunk(out, numbers)),
+                .zip(jobs.par_chunks(length))
+                .for_each(|(out, jobs)| build_chunk(out, jobs)),
         }
         let stamp = stamp::next();
-        for (chunk, numbers) in self.chunks.iter().zip(stale.chunks(length)) {
-            for (i, &number) in numbers.iter().enumerate() {
-                volumes.put(number, &lights[number], chunk, i, stamp);
+        for (chunk, jobs) in self.chunks.iter().zip(jobs.chunks(length)) {
+            for (i, job) in jobs.iter().enumerate() {
+                volumes.put(*job, &lights[job.number], chunk, i, stamp);
             }
         }
         volumes.compact(stamp);
-        stale.len()
     }
 }
 
@@ -170,7 +233,7 @@ fn lock(pool: &Mutex<Vec<Scratch>>) -> std::sync::MutexGuard<'_, Vec<Scratch>> {
 
 impl Key {
     fn is_stale(&self) -> bool {
-        !(self.fixed && self.objects)
+        self.fixed == Fixed::Stale || !self.objects
     }
 }
 
@@ -243,7 +306,7 @@ impl Volumes {
         let moved = self.world.update(world);
         for ((key, volume), light) in self.keys.iter_mut().zip(&mut self.lights).zip(lights) {
             if all || key.light != Some(*light) {
-                (key.fixed, key.objects) = (false, false);
+                (key.fixed, key.objects) = (Fixed::Stale, false);
             } else if !moved.is_empty() {
                 let reach = Reach::new(light);
                 key.objects &= !moved.iter().any(|at| reach.touches_box(*at));
@@ -260,14 +323,43 @@ impl Volumes {
     fn kept_fixed(&self, number: usize) -> Option<(&[Chain], u32)> {
         let key = &self.keys[number];
         let first = key.chain.first as usize;
-        key.fixed.then(|| {
+        (key.fixed != Fixed::Stale).then(|| {
             let chain = &self.chains[first..first + key.fixed_chain as usize];
             (chain, key.fixed_subset)
         })
     }
 
-    /// Stores light `number`, the `i`th of a chunk.
-    fn put(&mut self, number: usize, light: &Light, built: &Built, i: usize, stamp: u64) {
+    /// The wanted lights that are stale, and of those that are merely not settled as many as
+    /// `budget` casters make up; without a budget all of them, to be settled at once.
+    fn jobs(
+        &self,
+        lights: &[Light],
+        wanted: impl Fn(&Light) -> bool,
+        budget: Option<u32>,
+    ) -> Vec<Job> {
+        let mut left = budget;
+        let mut jobs = Vec::new();
+        for (number, (key, light)) in self.keys.iter().zip(lights).enumerate() {
+            let casters = self.lights[number].facing_triangles;
+            let after = left.map(|left| left.checked_sub(casters));
+            let hide = match key.fixed {
+                Fixed::Settled => false,
+                Fixed::Plain => after != Some(None),
+                Fixed::Stale => budget.is_none(),
+            };
+            if (key.is_stale() || hide) && wanted(light) {
+                if let (true, Some(after)) = (hide, after) {
+                    left = after;
+                }
+                jobs.push(Job { number, hide });
+            }
+        }
+        jobs
+    }
+
+    /// Stores the light of a job, the `i`th of a chunk.
+    fn put(&mut self, job: Job, light: &Light, built: &Built, i: usize, stamp: u64) {
+        let number = job.number;
         let volume = &built.lights[i];
         let of = |r: &Range<u32>| r.start as usize..r.end as usize;
         let (quads, chain) = (
@@ -280,7 +372,11 @@ impl Volumes {
         self.chain_store
             .put(&mut self.chains, &mut key.chain, chain, stamp);
         (key.fixed_chain, key.fixed_subset) = built.fixed[i];
-        (key.light, key.fixed, key.objects) = (Some(*light), true, true);
+        (key.light, key.objects) = (Some(*light), true);
+        key.fixed = match job.hide || !self.culls.has(Cull::Hidden) || key.fixed == Fixed::Settled {
+            true => Fixed::Settled,
+            false => Fixed::Plain,
+        };
         self.lights[number] = LightVolume {
             quads: key.quads.range(),
             chain: key.chain.range(),
@@ -328,50 +424,54 @@ fn build_one(
     world: &World,
     light: &Light,
     kept: Option<(&[Chain], u32)>,
+    hide: bool,
     scratch: &mut Scratch,
     out: &mut Built,
 ) {
     let start = Instant::now();
-    let (first_quad, first_chain) = (out.quads.len() as u32, out.chains.len() as u32);
+    let (first_quad, first_chain) = (out.quads.len(), out.chains.len());
+    scratch.chain.clear();
     let mut subset_triangles = match kept {
         Some((chain, subset)) => {
-            out.chains.extend_from_slice(chain);
+            scratch.chain.extend_from_slice(chain);
             subset
         }
         None => {
             query(world, Layer::Fixed, light, &mut scratch.subset);
-            facing(world, light, &scratch.subset, &mut out.chains);
+            facing(world, light, &scratch.subset, &mut scratch.chain);
             scratch.subset.len() as u32
         }
     };
+    if hide {
+        drop_hidden(world, light, &mut scratch.chain, &mut scratch.hidden);
+    }
     out.fixed
-        .push((out.chains.len() as u32 - first_chain, subset_triangles));
+        .push((scratch.chain.len() as u32, subset_triangles));
     if !world.objects.is_empty() {
         query(world, Layer::Objects, light, &mut scratch.subset);
-        facing(world, light, &scratch.subset, &mut out.chains);
+        facing(world, light, &scratch.subset, &mut scratch.chain);
         subset_triangles += scratch.subset.len() as u32;
     }
-    let cast = &out.chains[first_chain as usize..];
-    counter(
-        world,
-        cast,
-        &mut scratch.counters,
-        &mut scratch.touched,
-        &mut out.quads,
-    );
+    let Scratch {
+        chain,
+        touched,
+        counters,
+        ..
+    } = scratch;
+    counter(world, chain, counters, touched, &mut out.quads);
+    out.chains.extend_from_slice(chain);
+    let quads = &mut out.quads[first_quad..];
+    let in_range = range_first(world, light, quads, touched);
     #[cfg(debug_assertions)]
-    if let Err(fault) = check_closed(
-        world,
-        cast.iter().flat_map(Chain::triangles),
-        &out.quads[first_quad as usize..],
-    ) {
+    if let Err(fault) = check_closed(world, chain.iter().flat_map(Chain::triangles), quads) {
         panic!("{fault}");
     }
     out.lights.push(LightVolume {
         subset_triangles,
-        facing_triangles: cast.iter().map(Chain::len).sum::<usize>() as u32,
-        quads: first_quad..out.quads.len() as u32,
-        chain: first_chain..out.chains.len() as u32,
+        facing_triangles: chain.iter().map(Chain::len).sum::<usize>() as u32,
+        quads: first_quad as u32..out.quads.len() as u32,
+        in_range,
+        chain: first_chain as u32..out.chains.len() as u32,
         build_us: start.elapsed().as_secs_f32() * 1e6,
         ..LightVolume::default()
     });

@@ -11,7 +11,9 @@ mod chain;
 mod counter;
 mod crow;
 mod facing;
+mod hidden;
 mod plain;
+mod range;
 mod store;
 mod validate;
 
@@ -21,6 +23,8 @@ pub use chain::{Chain, ChainTriangle, Quad};
 pub use counter::counter;
 pub use crow::Crow;
 pub use facing::facing;
+pub use hidden::{HiddenScratch, drop_hidden};
 pub use plain::plain_counter;
+pub use range::{QuadRange, QuadReach, RangePrefix, range_first};
 pub use store::Version;
 pub use validate::{ClosureFault, check_closed};

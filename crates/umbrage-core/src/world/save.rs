@@ -9,6 +9,7 @@ mod layout;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use bytemuck::{CheckedBitPattern, NoUninit};
@@ -76,6 +77,14 @@ pub enum SavedWorldError {
 }
 
 impl World {
+    /// What of an array is not an object's.
+    fn fixed_part<'a, T>(&self, array: &'a [T], fixed: &Range<u32>) -> &'a [T] {
+        match self.objects.is_empty() {
+            true => array,
+            false => &array[..fixed.end as usize],
+        }
+    }
+
     /// Writes the world without its objects to `path`, whole or not at all; [`World::open`] asks for the same
     /// `fingerprint`, which is that of the mesh it was built from.
     ///
@@ -88,20 +97,18 @@ impl World {
             edges,
             nodes,
         } = &self.fixed;
-        let [vertices, triangles, edges, nodes] =
-            [vertices, triangles, edges, nodes].map(|r| r.end as usize);
-        let clusters = triangles.div_ceil(LANES);
+        let clusters = 0..triangles.end.div_ceil(LANES as u32);
         let arrays: [(&[u8], usize); Section::ALL.len()] = [
-            bytes(&self.positions[..vertices]),
-            bytes(&self.triangles[..triangles]),
-            bytes(&self.source[..triangles]),
-            bytes(&self.casting[..triangles]),
-            bytes(&self.edges.vertices[..edges]),
-            bytes(&self.edges.sides[..clusters]),
-            bytes(&self.clusters[..clusters]),
-            bytes(&self.planes.clusters[..clusters]),
-            bytes(&self.boxes[..clusters]),
-            bytes(&self.bvh.nodes[..nodes]),
+            bytes(self.fixed_part(&self.positions, vertices)),
+            bytes(self.fixed_part(&self.triangles, triangles)),
+            bytes(self.fixed_part(&self.source, triangles)),
+            bytes(self.fixed_part(&self.casting, triangles)),
+            bytes(self.fixed_part(&self.edges.vertices, edges)),
+            bytes(self.fixed_part(&self.edges.sides, &clusters)),
+            bytes(self.fixed_part(&self.clusters, &clusters)),
+            bytes(self.fixed_part(&self.planes.clusters, &clusters)),
+            bytes(self.fixed_part(&self.boxes, &clusters)),
+            bytes(self.fixed_part(&self.bvh.nodes, nodes)),
         ];
         let mut end = size_of::<Head>();
         let sections = arrays.map(|(bytes, element)| {
