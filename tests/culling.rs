@@ -8,6 +8,7 @@ use std::path::Path;
 use common::{Site, assert_exact, by_profile, lab, room, skipped};
 use umbrage_core::{Cull, Culls, View};
 use umbrage_lab::lab::Method;
+use umbrage_lab::seeded_lights::seeded_lights;
 use umbrage_lab::stage::Casters;
 use umbrage_truth::Mask;
 
@@ -123,6 +124,50 @@ fn bundled_worlds() {
             .collect();
         assert_site(name, &site, &views);
     }
+}
+
+/// Every map and world of a collection, eight places each.
+/// `UMBRAGE_SCENES=/path/to/scenes cargo test --release --test culling -- --ignored`
+#[test]
+#[ignore = "needs UMBRAGE_SCENES, and minutes"]
+fn scene_collection() {
+    let folder = std::env::var_os("UMBRAGE_SCENES").expect("UMBRAGE_SCENES is set");
+    let files = common::glb_files(Path::new(&folder));
+    assert!(!files.is_empty(), "no .glb under {}", folder.display());
+    let mut wrong = 0;
+    for path in files {
+        let mut site = Site::open(&path.to_string_lossy(), Casters::Material);
+        if site.lights.is_empty() {
+            let strewn = seeded_lights(&site.stage.mesh, 64, 0).into_iter();
+            let lights = strewn.map(|(position, range)| common::point(position, range));
+            site.lights = common::staged(lights);
+        }
+        for seed in 0..8 {
+            let view = site.seeded_view(seed, [320, 180]);
+            let mask = |culls| draw(&site, &view, Method::Counter, culls).mask;
+            let none = mask(Culls::NONE);
+            let differing = |other: &Mask| differences(&site, &none, other);
+            let all = differing(&mask(Culls::EVERY));
+            println!("{}, view {seed}: {} differ", path.display(), all.len());
+            if !all.is_empty() {
+                let only = |step| (step, differing(&mask(Culls::NONE.with(step))).len());
+                println!("  {all:?}, {:?}", Cull::ALL.map(only));
+            }
+            wrong += all.len();
+        }
+    }
+    assert_eq!(wrong, 0);
+}
+
+/// Where two masks differ: x, y, light.
+fn differences(site: &Site, a: &Mask, b: &Mask) -> Vec<(u32, u32, u32)> {
+    let [width, height] = a.size;
+    let lights = 0..site.lights.len() as u32;
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    pixels
+        .flat_map(|(x, y)| lights.clone().map(move |light| (x, y, light)))
+        .filter(|&(x, y, light)| a.get(x, y, light) != b.get(x, y, light))
+        .collect()
 }
 
 /// The comparison is awake: without its receivers a light goes dark.

@@ -103,10 +103,7 @@ fn room() {
 /// The bundled worlds with their own lights.
 #[test]
 fn bundled_worlds() {
-    let worlds = glb_files(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("data/worlds"),
-        "",
-    );
+    let worlds = common::glb_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("data/worlds"));
     assert!(!worlds.is_empty(), "data/worlds holds no .glb");
     for path in worlds {
         for casters in [Casters::Material, Casters::Both] {
@@ -125,8 +122,8 @@ fn bundled_worlds() {
 #[ignore = "needs UMBRAGE_SCENES, and minutes"]
 fn scene_collection() {
     let folder = PathBuf::from(std::env::var_os("UMBRAGE_SCENES").expect("UMBRAGE_SCENES is set"));
-    let mut files = glb_files(&folder.join("gamemaps"), "");
-    files.extend(glb_files(&folder.join("world"), "stk_"));
+    let mut files = common::glb_files(&folder.join("gamemaps"));
+    files.extend(common::glb_files(&folder.join("world")));
     assert!(
         !files.is_empty(),
         "{}: no gamemaps, no worlds",
@@ -156,19 +153,4 @@ fn judge_knows_right_from_wrong() {
         .shadow_mask(&view, &plain(&site.lights), NearClip::Clamped);
     let truth = common::judged(&site, &site.lights, &view, &mask, &found.skipped);
     assert_eq!((truth.wrong, truth.ambiguous), (0, 0));
-}
-
-fn glb_files(folder: &Path, prefix: &str) -> Vec<PathBuf> {
-    let Ok(entries) = folder.read_dir() else {
-        return Vec::new();
-    };
-    let mut files: Vec<PathBuf> = entries
-        .map(|entry| entry.expect("a readable folder").path())
-        .filter(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with(prefix) && name.ends_with(".glb")
-        })
-        .collect();
-    files.sort();
-    files
 }

@@ -4,6 +4,7 @@
 //! panics, and so fails the test that caused it.
 #![allow(dead_code)] // each test binary uses its own part
 
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glam::{DAffine3, Vec3};
@@ -223,6 +224,23 @@ pub(crate) fn assert_exact(what: &str, found: &Found) {
             j.samples
         );
     }
+}
+
+/// The .glb files in the folder and in those below it, in order of their paths.
+pub(crate) fn glb_files(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = folder.read_dir() else {
+        return Vec::new();
+    };
+    let mut files = Vec::new();
+    for path in entries.map(|entry| entry.expect("a readable folder").path()) {
+        match path.extension() {
+            _ if path.is_dir() => files.extend(glb_files(&path)),
+            Some(end) if end == "glb" => files.push(path),
+            _ => {}
+        }
+    }
+    files.sort();
+    files
 }
 
 /// The lights as shadow system and oracle see them.

@@ -27,6 +27,28 @@
 //! # Ok::<(), umbrage::WorldError>(())
 //! ```
 //!
+//! Volumes do not depend on the eye, and are kept: the next `build` builds only lights that changed
+//! or in whose range something moved. Objects are inserted with a pose, moved, and removed:
+//!
+//! ```
+//! # use umbrage::*;
+//! # use glam::{DVec3, Vec3};
+//! # let mut world = World::build(&Mesh::default())?;
+//! # let mesh = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Z], triangles: vec![[0, 2, 1]],
+//! #     casting: vec![Casting::Both] };
+//! # let lights = [Light { position: Vec3::Y, range: 5.0, shape: LightShape::Point }; 3];
+//! # let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
+//! let door = world.insert(&mesh, &Pose::at(DVec3::ZERO))?;
+//! assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 3);
+//! builder.settle(&world, &lights, |_| true, &mut volumes); // leave out hidden casters now
+//! assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 0);
+//! world.pose(door, &Pose::at(DVec3::new(40.0, 0.0, 0.0)))?;
+//! assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 3); // it was near them
+//! world.remove(door)?;
+//! assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 0); // and then far away
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # In a frame: volumes to a shadow mask
 //!
 //! The host owns device, queue, encoder and depth buffer. Its depth pass computes clip positions
@@ -35,16 +57,26 @@
 //!
 //! ```no_run
 //! # use umbrage::*;
-//! # fn frame(device: &wgpu::Device, queue: &wgpu::Queue, pass: &mut wgpu::RenderPass<'_>,
-//! #     renderer: &mut ShadowRenderer, world: &World, lights: &[Light], volumes: &Volumes,
-//! #     view: &View) -> Result<(), RenderError> {
-//! let mut plan = FramePlan::default();
+//! # fn frame(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder,
+//! #     depth: &wgpu::TextureView, renderer: &mut ShadowRenderer, world: &World, lights: &[Light],
+//! #     volumes: &Volumes, view: &View, light_pipeline: &wgpu::RenderPipeline)
+//! #     -> Result<(), RenderError> {
+//! # fn your_depth_pass(_: &mut wgpu::CommandEncoder) {}
+//! # fn your_light_pass(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { todo!() }
+//! let (mut plan, culls) = (FramePlan::default(), Culls::EVERY);
 //! plan.make(world, lights, volumes, view, &PlanOptions::default());
-//! renderer.prepare(device, queue, view, lights, volumes, &plan)?;
-//! renderer.record(pass, &plan, 0..lights.len(), |pass, light, _| {
-//!     // Scissor and stencil stand ready: set the host's own light pipeline, made with
-//!     // `renderer.light_depth_stencil()`, and draw light number `light` over the screen.
-//! #   let _ = (pass, light);
+//! renderer.upload_world(device, queue, world)?; // what changed of it, if anything
+//! let frame = Frame { view, lights, volumes, plan: &plan, culls };
+//! renderer.prepare(device, queue, &frame)?;
+//! your_depth_pass(encoder);
+//! renderer.find_receivers(device, encoder, depth, None);
+//! let mut pass = your_light_pass(encoder);
+//! renderer.record(&mut pass, &plan, 0..lights.len(), |pass, light, _| {
+//!     // Scissor and stencil stand ready. Your pipeline has `renderer.light_depth_stencil()`, and
+//!     // places its vertices with `umbrage_light_corner` of `light_wgsl`.
+//!     pass.set_pipeline(light_pipeline);
+//!     pass.set_bind_group(0, renderer.light_bind_group(), &[]);
+//!     renderer.draw_light(pass, light);
 //! });
 //! # Ok(())
 //! # }
