@@ -9,6 +9,7 @@ mod boxes;
 mod bvh;
 mod clusters;
 mod edges;
+mod half_edges;
 mod memory;
 mod planes;
 mod query;
@@ -20,6 +21,7 @@ mod weld;
 use std::time::Instant;
 
 use glam::Vec3;
+use rayon::prelude::*;
 use thiserror::Error;
 
 pub use array::Array;
@@ -163,9 +165,8 @@ impl World {
 
         let welded = weld::weld(&mesh.positions);
         report.welded_vertices = welded.count;
-        report.build_ms.weld = clock.lap();
-
         let kept: Vec<u32> = (0..mesh.triangles.len() as u32)
+            .into_par_iter()
             .filter(|&t| {
                 let [a, b, c] = mesh.triangles[t as usize].map(|v| welded.vertex[v as usize]);
                 a != b && b != c && c != a
@@ -173,19 +174,26 @@ impl World {
             .collect();
         report.triangles = kept.len();
         report.degenerate_triangles = mesh.triangles.len() - kept.len();
+        report.build_ms.weld = clock.lap();
 
         let (bvh, order) = bvh::build(mesh, &kept);
         report.build_ms.bvh = clock.lap();
 
-        let source: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
-        let casting: Vec<Casting> = source.iter().map(|&t| mesh.casting[t as usize]).collect();
+        let source: Vec<u32> = order.par_iter().map(|&i| kept[i as usize]).collect();
+        let rule = |&t: &u32| mesh.casting[t as usize];
+        let casting: Vec<Casting> = source.par_iter().map(rule).collect();
         let (positions, triangles) = weld::renumber(mesh, &welded, &source);
         let planes = Planes::new(&positions, &triangles);
         let boxes = boxes::boxes(&positions, &triangles);
         report.build_ms.order = clock.lap();
 
-        let edges = edges::unique_edges(&triangles, &mut report);
-        let clusters = clusters::clusters(&casting, &edges);
+        let grouped = half_edges::group(&triangles, positions.len());
+        let edges = edges::edges(&triangles, &grouped);
+        let clusters = clusters::clusters(&casting, &grouped);
+        report.unique_edges = grouped.counts.edges;
+        report.edges_by_triangles = grouped.counts.by_triangles;
+        report.opposite_wound_pairs = grouped.counts.opposite_wound_pairs;
+        report.duplicate_triangles = grouped.counts.duplicate_triangles;
         report.build_ms.edges = clock.lap();
 
         let mut world = Self {
