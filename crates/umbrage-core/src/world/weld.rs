@@ -9,14 +9,8 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::stages::Welded;
 use crate::mesh::Mesh;
-
-pub(super) struct Welded {
-    /// For each position the number of the first one that equals it.
-    pub(super) vertex: Vec<u32>,
-    /// How many distinct ones there are.
-    pub(super) count: usize,
-}
 
 #[derive(Clone, Copy)]
 struct Item {
@@ -42,7 +36,8 @@ fn hash([x, y, z]: [u32; 3]) -> u64 {
     (product >> 64) as u64 ^ product as u64
 }
 
-pub(super) fn weld(positions: &[Vec3]) -> Welded {
+/// For each position the number of the first that equals it; and how many distinct ones there are.
+pub(super) fn weld(positions: &[Vec3]) -> (Vec<u32>, usize) {
     let parts = (positions.len() / PART).next_power_of_two().min(256);
     let dealt = deal(positions, parts);
     let vertex: Vec<AtomicU32> = (0..positions.len() as u32)
@@ -53,10 +48,8 @@ pub(super) fn weld(positions: &[Vec3]) -> Welded {
         .into_par_iter()
         .map(|part| weld_part(dealt.iter().map(|chunk| &chunk[part][..]), &vertex))
         .sum();
-    Welded {
-        vertex: vertex.into_par_iter().map(AtomicU32::into_inner).collect(),
-        count,
-    }
+    let vertex = vertex.into_par_iter().map(AtomicU32::into_inner);
+    (vertex.collect(), count)
 }
 
 /// By chunk of positions, then by part: in each, indices ascend.
