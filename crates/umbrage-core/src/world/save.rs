@@ -132,11 +132,12 @@ impl World {
     /// # Errors
     /// Anything but an undamaged world of this format and this mesh is refused.
     pub fn open(path: &Path, fingerprint: Fingerprint) -> Result<Self, SavedWorldError> {
-        let file = File::open(path)?;
-        if file.metadata()?.len() < size_of::<Preamble>() as u64 {
+        // Asked before opening: that would wait for whoever writes to a pipe.
+        let found = fs::metadata(path)?;
+        if !found.is_file() || found.len() < size_of::<Preamble>() as u64 {
             return Err(SavedWorldError::NotASavedWorld);
         }
-        let file = MappedFile::new(&file)?;
+        let file = MappedFile::new(&File::open(path)?)?;
         let contents = contents(file.bytes())?;
         if contents.fingerprint != fingerprint {
             return Err(SavedWorldError::Stale);
