@@ -10,7 +10,7 @@ use std::path::Path;
 use divan::{Bencher, black_box};
 use umbrage_core::volume::{self, VolumeBuilder, Volumes, counter};
 use umbrage_core::world::stages::{self, Welded};
-use umbrage_core::world::{Subset, World, query};
+use umbrage_core::world::{Layer, Subset, World, query};
 use umbrage_core::{Light, Mesh};
 use umbrage_lab::stage::{Casters, Stage};
 
@@ -106,7 +106,7 @@ fn queries(bencher: Bencher<'_, '_>, scene: &str) {
     let mut subset = Subset::default();
     bencher.bench_local(|| {
         for light in &lights {
-            query(&stage.world, black_box(light), &mut subset);
+            query(&stage.world, Layer::Fixed, black_box(light), &mut subset);
         }
     });
 }
@@ -115,7 +115,7 @@ fn queries(bencher: Bencher<'_, '_>, scene: &str) {
 fn facing(bencher: Bencher<'_, '_>, scene: &str) {
     let (stage, lights) = stage(scene);
     let (mut subset, mut cast) = (Subset::default(), Vec::new());
-    query(&stage.world, &lights[0], &mut subset);
+    query(&stage.world, Layer::Fixed, &lights[0], &mut subset);
     bencher.bench_local(|| {
         cast.clear();
         volume::facing(&stage.world, black_box(&lights[0]), &subset, &mut cast);
@@ -128,7 +128,7 @@ fn counters(bencher: Bencher<'_, '_>, scene: &str) {
     let (mut subset, mut cast) = (Subset::default(), Vec::new());
     let (mut touched, mut quads) = (Vec::new(), Vec::new());
     let mut counts = vec![0; stage.world.edges.vertices.len()];
-    query(&stage.world, &lights[0], &mut subset);
+    query(&stage.world, Layer::Fixed, &lights[0], &mut subset);
     volume::facing(&stage.world, &lights[0], &subset, &mut cast);
     bencher.bench_local(|| {
         quads.clear();

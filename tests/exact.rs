@@ -154,7 +154,7 @@ fn judge_knows_right_from_wrong() {
     let mask = site
         .oracle
         .shadow_mask(&view, &plain(&site.lights), NearClip::Clamped);
-    let truth = common::judged(&site, &site.lights, &view, &mask, &found.plan);
+    let truth = common::judged(&site, &site.lights, &view, &mask, &found.skipped);
     assert_eq!((truth.wrong, truth.ambiguous), (0, 0));
 }
 

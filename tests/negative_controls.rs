@@ -275,7 +275,7 @@ fn a_shift_by_a_pixel_is_wrong() {
             &control.lights,
             &control.view,
             &shifted,
-            &found.plan,
+            &found.skipped,
         );
         assert!(judgement.wrong > 200, "{judgement:?}");
         assert!(20 * judgement.ambiguous < judgement.wrong, "{judgement:?}");
@@ -296,7 +296,7 @@ fn an_inverted_mask_is_wrong() {
         &control.lights,
         &control.view,
         &inverted,
-        &found.plan,
+        &found.skipped,
     );
     assert_eq!(
         judgement.wrong + judgement.ambiguous,

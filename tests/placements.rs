@@ -328,7 +328,7 @@ fn near_plane_through_volumes() {
                 for method in EXACT {
                     let found = check(&site, lights, &view, method);
                     let beyond = beyond_near(&site, &view, &found.mask);
-                    let judgement = common::judged(&site, lights, &view, &beyond, &found.plan);
+                    let judgement = common::judged(&site, lights, &view, &beyond, &found.skipped);
                     let what = format!("{name}, seed {seed}, near {near}, {}", method.name());
                     assert_exact(&what, &Found { judgement, ..found });
                 }

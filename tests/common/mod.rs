@@ -8,6 +8,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glam::{DAffine3, Vec3};
 use umbrage_core::frame::{FramePlan, LightPath};
+use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, LightShape, View};
 use umbrage_lab::gpu::{AdapterChoice, Gpu};
 use umbrage_lab::lab::{Lab, Method};
@@ -132,6 +133,8 @@ pub(crate) struct Found {
     pub(crate) judgement: Judgement,
     pub(crate) mask: Mask,
     pub(crate) plan: FramePlan,
+    /// Which lights were left out, by the plan or by the GPU.
+    pub(crate) skipped: Vec<bool>,
     /// Whether every volume is closed, counted in integers.
     pub(crate) closed: bool,
 }
@@ -149,42 +152,49 @@ pub(crate) fn check_changed(
     method: Method,
     change: impl FnOnce(&mut Lab),
 ) -> Found {
-    let (mask, plan, closed) = {
+    let (mask, plan, skipped, closed) = {
         let mut lab = lab();
         lab.prepare(&site.stage, lights, view, method);
         change(&mut lab);
         let mask = lab.mask(&site.stage, lights, view);
         let closed = lab.volumes.check_closed(&site.stage.world).is_ok();
+        // Nothing changed by hand is kept.
+        lab.volumes = Volumes::default();
         (
             mask.expect("the mask can be drawn and read"),
             lab.plan.clone(),
+            skipped(&lab),
             closed,
         )
     };
     Found {
-        judgement: judged(site, lights, view, &mask, &plan),
+        judgement: judged(site, lights, view, &mask, &skipped),
+        skipped,
         mask,
         plan,
         closed,
     }
 }
 
-/// The judge's word on a mask drawn by a plan.
+/// Which lights the last mask left out.
+pub(crate) fn skipped(lab: &Lab) -> Vec<bool> {
+    (0..lab.plan.lights.len())
+        .map(|light| matches!(lab.path(light), LightPath::Skipped(_)))
+        .collect()
+}
+
+/// The judge's word on a mask, drawn without the lights that were skipped.
 pub(crate) fn judged(
     site: &Site,
     lights: &[StageLight],
     view: &View,
     mask: &Mask,
-    plan: &FramePlan,
+    skipped: &[bool],
 ) -> Judgement {
-    let skipped = plan
-        .lights
-        .iter()
-        .map(|l| matches!(l.path, LightPath::Skipped(_)));
     let near = lab().near_clip();
     let options = JudgeOptions::default()
         .with_near(near)
-        .with_skipped(skipped.collect());
+        .with_skipped(skipped.to_vec());
     judge(
         &site.oracle,
         view,

@@ -5,12 +5,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::Serialize;
+use umbrage_lab::Culls;
 use umbrage_lab::gpu::AdapterChoice;
 
 use crate::error::CliError;
 use crate::json;
 use crate::table::Table;
-use crate::values::{CameraChoice, LightChoice, Method, Point, RangeChoice, Size, adapter, metres};
+use crate::values::{
+    CameraChoice, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter, metres,
+};
 
 /// Exact shadows from hundreds of lights in large triangle worlds: renders them, measures them
 /// against an oracle, and says which light costs what.
@@ -259,12 +262,28 @@ pub(crate) struct RunArgs {
     /// Frames that times are medians over, after one warm-up
     #[arg(long, value_name = "N", default_value = "5")]
     pub(crate) repeat: NonZeroUsize,
+    /// Switch off a step that skips work: view, receivers, quads, hidden, range, cache, or all. No
+    /// step changes a shadow, only what it costs
+    #[arg(long, value_name = "STEP", value_delimiter = ',')]
+    pub(crate) no_cull: Vec<NoCull>,
     /// CPU threads [default: all cores]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
     /// auto: the fastest; cpu: a software rasteriser; or part of an adapter's name
     #[arg(long, value_name = "auto|NAME|cpu", default_value = "auto", value_parser = adapter)]
     pub(crate) adapter: AdapterChoice,
+}
+
+impl RunArgs {
+    /// The steps that are left.
+    pub(crate) fn culls(&self) -> Culls {
+        self.no_cull
+            .iter()
+            .fold(Culls::EVERY, |left, off| match off.0 {
+                Some(step) => left.without(step),
+                None => Culls::NONE,
+            })
+    }
 }
 
 /// `--casters`.

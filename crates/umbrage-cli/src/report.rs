@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use umbrage_lab::Uploaded;
 
 /// `render`.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -29,9 +30,14 @@ pub(crate) struct RenderTotals {
     pub(crate) facing_triangles: u64,
     pub(crate) quads: u64,
     pub(crate) cap_triangles: u64,
+    /// Of the quads, those drawn.
+    pub(crate) quads_drawn: u64,
     /// Quads and cap triangles drawn.
     pub(crate) polygons: u64,
+    /// In the last frame.
     pub(crate) uploaded_bytes: u64,
+    /// Quads and caps among them.
+    pub(crate) uploaded_volume_bytes: u64,
     pub(crate) lights_rebuilt: u64,
     pub(crate) lights_cached: u64,
     pub(crate) lights_skipped: u64,
@@ -57,7 +63,10 @@ pub(crate) struct LightReport {
     pub(crate) range: Option<f32>,
     pub(crate) subset_triangles: u64,
     pub(crate) facing_triangles: u64,
+    /// Of its volume.
     pub(crate) quads: u64,
+    /// Of these, what the last frame drew.
+    pub(crate) quads_drawn: u64,
     pub(crate) cap_triangles: u64,
     pub(crate) path: PathTaken,
     /// Why this path; empty for the default one.
@@ -68,23 +77,25 @@ pub(crate) struct LightReport {
 }
 
 impl RenderTotals {
-    /// Sums what the lights report; `uploaded_bytes` is the frame's own.
-    pub(crate) fn of(lights: &[LightReport], uploaded_bytes: u64) -> Self {
+    /// Sums what the lights report; what was uploaded is the frame's own.
+    pub(crate) fn of(lights: &[LightReport], uploaded: Uploaded) -> Self {
         let mut totals = Self {
-            uploaded_bytes,
+            uploaded_bytes: uploaded.volume_bytes + uploaded.other_bytes,
+            uploaded_volume_bytes: uploaded.volume_bytes,
             ..Self::default()
         };
         for light in lights {
             totals.subset_triangles += light.subset_triangles;
             totals.facing_triangles += light.facing_triangles;
-            totals.quads += light.quads;
-            totals.cap_triangles += light.cap_triangles;
             let skipped = light.path == PathTaken::Skipped;
+            totals.quads += light.quads;
+            totals.quads_drawn += light.quads_drawn;
+            totals.cap_triangles += if skipped { 0 } else { light.cap_triangles };
             totals.lights_skipped += u64::from(skipped);
             totals.lights_cached += u64::from(!skipped && light.cached);
             totals.lights_rebuilt += u64::from(!skipped && !light.cached);
         }
-        totals.polygons = totals.quads + totals.cap_triangles;
+        totals.polygons = totals.quads_drawn + totals.cap_triangles;
         totals
     }
 }
@@ -192,7 +203,25 @@ pub(crate) struct VolumesReport {
     pub(crate) subset_triangles: u64,
     /// The library's own build of all lights on all threads.
     pub(crate) parallel_ms_total: f64,
+    /// The same on one.
+    pub(crate) serial_ms_total: f64,
     pub(crate) methods: Vec<VolumesMethod>,
+    pub(crate) lights_detail: Vec<VolumesLight>,
+}
+
+/// One light, by every method.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct VolumesLight {
+    pub(crate) name: String,
+    /// point, spot or directional.
+    pub(crate) kind: String,
+    pub(crate) subset_triangles: u64,
+    /// Casters by name of the method.
+    pub(crate) facing_triangles: BTreeMap<String, u64>,
+    /// By name of the method.
+    pub(crate) quads: BTreeMap<String, u64>,
+    /// Microseconds for query, facing and quads, by name of the method.
+    pub(crate) build_us: BTreeMap<String, f64>,
 }
 
 /// One method over all lights: query, facing and quads.
@@ -202,6 +231,10 @@ pub(crate) struct VolumesMethod {
     pub(crate) ms_total: f64,
     pub(crate) ns_per_triangle: f64,
     pub(crate) quads: u64,
+    /// Mean over all lights.
+    pub(crate) quads_per_light: f64,
+    /// Mean over point and spot lights; 0 if there are none.
+    pub(crate) quads_per_local_light: f64,
     /// Light and dark caps, if drawn.
     pub(crate) cap_triangles: u64,
     /// Quads and cap triangles.
@@ -268,6 +301,10 @@ mod tests {
             "scene lights threads subset_triangles methods",
         );
         has(
+            keys(&VolumesLight::default()),
+            "name kind subset_triangles facing_triangles quads build_us",
+        );
+        has(
             keys(&VolumesMethod::default()),
             "name ms_total ns_per_triangle quads cap_triangles polygons \
              adjacency_bytes_per_triangle",
@@ -282,15 +319,20 @@ mod tests {
             path,
             cached,
             quads: 3,
+            quads_drawn: if path == PathTaken::Skipped { 0 } else { 2 },
             cap_triangles: 2,
             ..LightReport::default()
+        };
+        let uploaded = Uploaded {
+            volume_bytes: 10,
+            other_bytes: 30,
         };
         let lights = [
             light(PathTaken::Zpass, true),
             light(PathTaken::Zfail, false),
             light(PathTaken::Skipped, true),
         ];
-        let totals = RenderTotals::of(&lights, 40);
+        let totals = RenderTotals::of(&lights, uploaded);
         assert_eq!(
             (
                 totals.lights_rebuilt,
@@ -301,7 +343,7 @@ mod tests {
         );
         assert_eq!(
             (totals.quads, totals.polygons, totals.uploaded_bytes),
-            (9, 15, 40)
+            (9, 8, 40)
         );
         assert_eq!(serde_json::to_value(PathTaken::Zpass).unwrap(), "zpass");
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use glam::DVec3;
+use umbrage_lab::Cull;
 use umbrage_lab::gpu::AdapterChoice;
 
 /// `WxH` in pixels.
@@ -43,6 +44,25 @@ impl FromStr for Point {
             Some(&[x, y, z]) => Ok(Self(DVec3::new(x, y, z))),
             _ => Err("expected three numbers, as in 1.5,0,-20".to_owned()),
         }
+    }
+}
+
+/// `--no-cull`: one step, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct NoCull(pub(crate) Option<Cull>);
+
+impl FromStr for NoCull {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "all" {
+            return Ok(Self(None));
+        }
+        let step = Cull::ALL.into_iter().find(|step| step.name() == text);
+        step.map(|step| Self(Some(step))).ok_or_else(|| {
+            let names: Vec<&str> = Cull::ALL.iter().map(|step| step.name()).collect();
+            format!("expected all or one of {}", names.join(", "))
+        })
     }
 }
 

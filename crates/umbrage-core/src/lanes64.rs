@@ -97,11 +97,11 @@ pub(crate) use avx512::Avx512;
 #[allow(unsafe_code, reason = "measured: see the module's head")]
 mod avx512 {
     use std::arch::x86_64::{
-        _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm512_abs_ps, _mm512_add_ps, _mm512_cmp_ps_mask,
-        _mm512_loadu_ps, _mm512_loadu_si512, _mm512_maskz_compress_epi32, _mm512_max_ps,
-        _mm512_movepi8_mask, _mm512_movm_epi8, _mm512_mul_ps, _mm512_permutexvar_epi8,
-        _mm512_set1_epi32, _mm512_set1_ps, _mm512_setzero_ps, _mm512_storeu_si512, _mm512_sub_ps,
-        _mm512_xor_si512,
+        __m512, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm512_abs_ps, _mm512_add_ps,
+        _mm512_cmp_ps_mask, _mm512_loadu_ps, _mm512_loadu_si512, _mm512_maskz_compress_epi32,
+        _mm512_max_ps, _mm512_movepi8_mask, _mm512_movm_epi8, _mm512_mul_ps,
+        _mm512_permutexvar_epi8, _mm512_set1_epi32, _mm512_set1_ps, _mm512_setzero_ps,
+        _mm512_storeu_si512, _mm512_sub_ps, _mm512_xor_si512,
     };
 
     use super::{BoxCluster, EdgeUse, FILTER, LANES, Lanes64, LightPoint, PlaneCluster, Quad};
@@ -119,7 +119,9 @@ mod avx512 {
             .then_some(Self(()))
         }
 
-        /// Compiles `f` for this processor.
+        /// Compiles `f` for this processor. What `f` calls must be inlined down to the
+        /// intrinsics, closures too: a call in between, such as that of an array's `map`, is
+        /// compiled without the features and makes each of them a call.
         #[inline]
         pub(crate) fn run(self, f: impl FnOnce(Self)) {
             // SAFETY: `self` exists only where `detect` found the features.
@@ -132,13 +134,32 @@ mod avx512 {
         }
     }
 
+    /// Squared distance along an axis from 16 boxes.
+    ///
+    /// # Safety
+    /// AVX-512 F; `chunk` below 4.
+    #[inline(always)]
+    unsafe fn beside2(boxes: &BoxCluster, axis: usize, chunk: usize, center: f32) -> __m512 {
+        // SAFETY: the caller's: each load of 16 lanes stays inside an array of 64.
+        unsafe {
+            let center = _mm512_set1_ps(center);
+            let min = _mm512_loadu_ps(boxes.min[axis].as_ptr().add(16 * chunk));
+            let max = _mm512_loadu_ps(boxes.max[axis].as_ptr().add(16 * chunk));
+            let (below, above) = (_mm512_sub_ps(min, center), _mm512_sub_ps(center, max));
+            let side = _mm512_max_ps(_mm512_max_ps(below, above), _mm512_setzero_ps());
+            _mm512_mul_ps(side, side)
+        }
+    }
+
     impl Lanes64 for Avx512 {
         #[inline(always)]
         fn sides(self, planes: &PlaneCluster, light: &LightPoint) -> (u64, u64) {
             // SAFETY: the features are there (see `Avx512`), and each load of 16 lanes stays
             // inside an array of 64.
             unsafe {
-                let [x, y, z, w] = light.homogeneous.map(|c| _mm512_set1_ps(c));
+                let [x, y, z, w] = light.homogeneous;
+                let (x, y) = (_mm512_set1_ps(x), _mm512_set1_ps(y));
+                let (z, w) = (_mm512_set1_ps(z), _mm512_set1_ps(w));
                 let (norm1, filter) = (_mm512_set1_ps(light.norm1), _mm512_set1_ps(FILTER));
                 let (mut front, mut back) = (0, 0);
                 for chunk in 0..LANES / 16 {
@@ -163,18 +184,12 @@ mod avx512 {
             // SAFETY: the features are there, and each load of 16 lanes stays inside an array of
             // 64.
             unsafe {
-                let center = center.map(|c| _mm512_set1_ps(c));
                 let range2 = _mm512_set1_ps(range2);
-                let zero = _mm512_setzero_ps();
                 let mut near = 0;
                 for chunk in 0..LANES / 16 {
-                    let load = |a: &[f32; LANES]| _mm512_loadu_ps(a.as_ptr().add(16 * chunk));
-                    let [x, y, z] = [0, 1, 2].map(|axis| {
-                        let below = _mm512_sub_ps(load(&boxes.min[axis]), center[axis]);
-                        let above = _mm512_sub_ps(center[axis], load(&boxes.max[axis]));
-                        let side = _mm512_max_ps(_mm512_max_ps(below, above), zero);
-                        _mm512_mul_ps(side, side)
-                    });
+                    let x = beside2(boxes, 0, chunk, center[0]);
+                    let y = beside2(boxes, 1, chunk, center[1]);
+                    let z = beside2(boxes, 2, chunk, center[2]);
                     let sum = _mm512_add_ps(_mm512_add_ps(x, y), z);
                     let kept = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(sum, range2);
                     near |= u64::from(kept) << (16 * chunk);

@@ -6,14 +6,17 @@
 //! is drawn. Positions are f32, relative to one f64 world origin.
 #![deny(unsafe_code)]
 
+pub mod cull;
 mod fingerprint;
 pub mod frame;
 mod lanes64;
 pub mod light;
 pub mod mesh;
+mod stamp;
 pub mod volume;
 pub mod world;
 
+pub use cull::{Cull, Culls};
 pub use fingerprint::Fingerprint;
 pub use frame::view::View;
 pub use light::{Light, LightShape};

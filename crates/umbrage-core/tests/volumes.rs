@@ -10,12 +10,12 @@ use umbrage_core::volume::{
     Chain, ChainTriangle, Crow, Quad, VolumeBuilder, Volumes, brute, check_closed, counter, facing,
     plain_counter,
 };
-use umbrage_core::world::{LightPoint, Planes, Reach, Subset, World, query};
+use umbrage_core::world::{Layer, LightPoint, Planes, Reach, Subset, World, query};
 use umbrage_core::{Casting, Light};
 
 fn subset(world: &World, light: &Light) -> Subset {
     let mut subset = Subset::default();
-    query(world, light, &mut subset);
+    query(world, Layer::Fixed, light, &mut subset);
     subset
 }
 

@@ -46,7 +46,13 @@ impl Targets {
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         Ok(Self {
             size,
-            depth: texture(gpu, "depth", size, DEPTH_STENCIL, TextureUsages::empty()),
+            depth: texture(
+                gpu,
+                "depth",
+                size,
+                DEPTH_STENCIL,
+                TextureUsages::TEXTURE_BINDING,
+            ),
             albedo: texture(gpu, "albedo", size, ALBEDO, read),
             normal: texture(gpu, "normal", size, NORMAL, read),
             distance: texture(gpu, "distance", size, DISTANCE, read),
@@ -81,6 +87,14 @@ pub fn texture(
 /// The default view of a texture.
 pub fn whole(texture: &Texture) -> TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// The view of a depth texture that shaders can read.
+pub fn depth_only(texture: &Texture) -> TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        aspect: wgpu::TextureAspect::DepthOnly,
+        ..wgpu::TextureViewDescriptor::default()
+    })
 }
 
 /// Draws the stage's triangles, both sides, whatever casts.
@@ -119,28 +133,21 @@ impl GBufferPass {
                 }),
             )
         };
-        let of_source = |t: &u32| *t as usize;
-        let material: Vec<u32> = world
-            .source
-            .iter()
-            .map(|t| soup.material[of_source(t)])
-            .collect();
+        // Objects come after the fixed triangles; they have the first material, and no more.
+        let fixed = &world.source[..world.fixed.triangles.end as usize];
+        let sources = || fixed.iter().map(|t| *t as usize);
+        let triangles_in_all = world.triangles.len();
+        let mut material: Vec<u32> = sources().map(|t| soup.material[t]).collect();
+        material.resize(triangles_in_all, 0);
         let mut normals = vec![0u32];
         if !soup.normals.is_empty() {
-            normals = world
-                .source
-                .iter()
-                .flat_map(|t| soup.normals[of_source(t)])
-                .map(pack)
-                .collect();
+            normals = sources().flat_map(|t| soup.normals[t]).map(pack).collect();
+            normals.resize(3 * triangles_in_all, 0);
         }
         let mut uvs = vec![glam::Vec2::ZERO];
         if !soup.uvs.is_empty() {
-            uvs = world
-                .source
-                .iter()
-                .flat_map(|t| soup.uvs[of_source(t)])
-                .collect();
+            uvs = sources().flat_map(|t| soup.uvs[t]).collect();
+            uvs.resize(3 * triangles_in_all, glam::Vec2::ZERO);
         }
         let materials: Vec<[[f32; 4]; 2]> = stage
             .scene

@@ -121,6 +121,7 @@ impl Gpu {
         let info = adapter.get_info();
         let wanted = wgpu::Features::DEPTH_CLIP_CONTROL
             | wgpu::Features::DEPTH32FLOAT_STENCIL8
+            | wgpu::Features::INDIRECT_FIRST_INSTANCE
             | wgpu::Features::TIMESTAMP_QUERY;
         let features = adapter.features() & wanted;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {

@@ -6,7 +6,7 @@ use umbrage::{View, VolumeColor};
 
 use crate::gbuffer::texture;
 use crate::gpu::GpuError;
-use crate::lab::{Lab, Run, light_pass};
+use crate::lab::{Lab, light_pass};
 use crate::light_pass::{HDR, LightDraw};
 use crate::readback::read_texture;
 use crate::stage::{Stage, StageLight};
@@ -55,33 +55,20 @@ impl Lab {
         draw: LightDraw,
     ) -> Result<Vec<f32>, GpuError> {
         let gpu = self.gpu();
-        let Run {
-            targets,
-            mut shadows,
-            surface,
-            light,
-        } = self.run(stage, view, draw, volume_color)?;
-        let binding = light.bind(gpu, &shadows, lights, &targets);
-        shadows.prepare(
-            &gpu.device,
-            &gpu.queue,
-            view,
-            &self.lights,
-            &self.volumes,
-            &self.plan,
-        )?;
+        let mut run = self.run(stage, view, draw, volume_color)?;
+        run.shadows
+            .prepare(&gpu.device, &gpu.queue, &self.frame(view))?;
+        let binding = run.light.bind(gpu, &run.shadows, lights, &run.targets);
         let sums = texture(gpu, "counts", view.size, HDR, wgpu::TextureUsages::COPY_SRC);
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor {
                 label: Some("counts"),
             });
-        surface.record(&mut encoder, &targets, None);
+        run.record_surface(gpu, &mut encoder, None);
         {
-            let mut pass = light_pass(&mut encoder, &targets, &sums, None);
-            shadows.record(&mut pass, &self.plan, 0..usize::MAX, |pass, number, _| {
-                light.draw(pass, &binding, number);
-            });
+            let mut pass = light_pass(&mut encoder, &run.targets, &sums, None);
+            run.record_lights(&mut pass, &self.plan, 0..usize::MAX, &binding);
         }
         gpu.queue.submit([encoder.finish()]);
         let first = |t: &[u8]| f16::from_le_bytes([t[0], t[1]]).to_f32();

@@ -5,14 +5,17 @@ use std::time::Instant;
 use glam::Vec3;
 use half::f16;
 use umbrage::frame::bounds::light_rect;
-use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions};
+use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
 use umbrage::volume::{VolumeBuilder, Volumes};
-use umbrage::{Light, RendererOptions, ShadowRenderer, View, VolumeColor};
+use umbrage::{
+    Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
+    VolumeColor,
+};
 use umbrage_truth::{Mask, NearClip};
 
-use crate::gbuffer::{GBufferPass, Targets, texture, whole};
+use crate::gbuffer::{GBufferPass, Targets, depth_only, texture, whole};
 use crate::gpu::{Gpu, GpuError};
-use crate::light_pass::{LightDraw, LightPass};
+use crate::light_pass::{LightBinding, LightDraw, LightPass};
 use crate::picture::Lit;
 use crate::readback::{read_buffer, read_texture};
 use crate::stage::{Stage, StageLight};
@@ -54,8 +57,10 @@ impl Method {
 /// Milliseconds of one frame's stages. GPU stages are zero without timestamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageTimes {
-    /// Volumes generated, on the CPU.
+    /// Volumes brought up to date, on the CPU.
     pub volumes: f64,
+    /// The same in the first frame, when nothing was there.
+    pub volumes_first: f64,
     /// Frame planned: culling, eye counts.
     pub plan: f64,
     /// Buffers written.
@@ -64,6 +69,8 @@ pub struct StageTimes {
     pub record: f64,
     /// GPU: depth and surface.
     pub gpu_surface: f64,
+    /// GPU: receivers found.
+    pub gpu_receivers: f64,
     /// GPU: volumes and lights.
     pub gpu_lights: f64,
     /// From start to the GPU's end.
@@ -74,24 +81,89 @@ pub struct StageTimes {
 #[derive(Debug)]
 pub struct Lab {
     gpu: Gpu,
+    /// Which steps skip work.
+    pub culls: Culls,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
     pub plan: FramePlan,
+    /// What the GPU drew of each light in the last frame; empty if that was not found out.
+    pub calls: Vec<LightCalls>,
     /// Bytes written for the last frame.
-    pub uploaded_bytes: u64,
+    pub uploaded: Uploaded,
     /// Times of the last frame.
     pub times: StageTimes,
     builder: VolumeBuilder,
     pub(crate) lights: Vec<Light>,
 }
 
-/// Everything that depends on target formats or size, for one run.
-pub(crate) struct Run {
+/// Everything that depends on target formats or size.
+#[derive(Debug)]
+pub struct Run {
     pub(crate) targets: Targets,
     pub(crate) shadows: ShadowRenderer,
     pub(crate) surface: GBufferPass,
     pub(crate) light: LightPass,
+    /// When each object was placed that `surface` knows.
+    objects: Vec<u64>,
+}
+
+impl Run {
+    /// Whether objects came or went since the last call.
+    fn placed(&mut self, stage: &Stage) -> bool {
+        let objects: Vec<u64> = stage.world.objects.iter().map(|o| o.placed).collect();
+        std::mem::replace(&mut self.objects, objects.clone()) != objects
+    }
+
+    /// Depth and surface, and what of it each light can be seen to light.
+    pub(crate) fn record_surface(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: Option<&Timer>,
+    ) {
+        self.surface
+            .record(encoder, &self.targets, timer.map(|t| t.writes(0)));
+        let depth = depth_only(&self.targets.depth);
+        let writes = timer.map(|t| t.compute_writes(2));
+        self.shadows
+            .find_receivers(&gpu.device, encoder, &depth, writes);
+    }
+
+    pub(crate) fn record_lights(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        plan: &FramePlan,
+        lights: std::ops::Range<usize>,
+        binding: &LightBinding,
+    ) {
+        self.shadows.record(pass, plan, lights, |pass, number, _| {
+            self.light.draw(pass, &self.shadows, binding, number);
+        });
+    }
+}
+
+/// The calls that receivers left, or none where they were not looked for.
+fn read_calls(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuError> {
+    let Some(calls) = shadows.calls() else {
+        return Ok(Vec::new());
+    };
+    let readable = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("calls, readable"),
+        size: calls.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("calls"),
+        });
+    encoder.copy_buffer_to_buffer(calls, 0, &readable, 0, readable.size());
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_buffer(gpu, &readable)?;
+    let whole = bytes.len() / size_of::<LightCalls>() * size_of::<LightCalls>();
+    Ok(bytemuck::pod_collect_to_vec(&bytes[..whole]))
 }
 
 impl Lab {
@@ -99,9 +171,11 @@ impl Lab {
     pub fn new(gpu: Gpu) -> Self {
         Self {
             gpu,
+            culls: Culls::EVERY,
             volumes: Volumes::default(),
             plan: FramePlan::default(),
-            uploaded_bytes: 0,
+            calls: Vec::new(),
+            uploaded: Uploaded::default(),
             times: StageTimes::default(),
             builder: VolumeBuilder::default(),
             lights: Vec::new(),
@@ -121,13 +195,17 @@ impl Lab {
         if method == Method::None {
             self.volumes = Volumes::empty(self.lights.len());
         } else {
-            let in_view = |light: &Light| !light_rect(view, light).is_empty();
+            let culls = self.culls;
+            let in_view =
+                |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
+            self.builder.culls = culls;
             self.builder
-                .build(&stage.world, &self.lights, in_view, &mut self.volumes);
+                .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         }
         self.times.volumes = ms_since(start);
         let start = Instant::now();
         let mut options = PlanOptions::default();
+        options.culls = self.culls;
         if method == Method::CounterZFail || !self.gpu.depth_clamp {
             options.path = PathRule::ZFailAlways;
         }
@@ -158,7 +236,7 @@ impl Lab {
                 volume_color,
             },
         )?;
-        shadows.upload_world(&self.gpu.device, &stage.world)?;
+        shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
         let light = LightPass::new(&self.gpu, &shadows, draw);
         Ok(Run {
@@ -166,6 +244,7 @@ impl Lab {
             shadows,
             surface,
             light,
+            objects: stage.world.objects.iter().map(|o| o.placed).collect(),
         })
     }
 
@@ -187,19 +266,14 @@ impl Lab {
             .light
             .bind(&self.gpu, &run.shadows, lights, &run.targets);
         let timer = Timer::new(&self.gpu);
-        let mut all = Vec::new();
+        let mut all: Vec<StageTimes> = Vec::new();
         for _ in 0..=repeat {
             let start = Instant::now();
             self.prepare(stage, lights, view, method);
             let upload = Instant::now();
-            self.uploaded_bytes = run.shadows.prepare(
-                &self.gpu.device,
-                &self.gpu.queue,
-                view,
-                &self.lights,
-                &self.volumes,
-                &self.plan,
-            )?;
+            self.uploaded =
+                run.shadows
+                    .prepare(&self.gpu.device, &self.gpu.queue, &self.frame(view))?;
             self.times.upload = ms_since(upload);
             let record = Instant::now();
             let mut encoder =
@@ -208,18 +282,11 @@ impl Lab {
                     .create_command_encoder(&wgpu::CommandEncoderDescriptor {
                         label: Some("frame"),
                     });
-            run.surface.record(
-                &mut encoder,
-                &run.targets,
-                timer.as_ref().map(|t| t.writes(0)),
-            );
+            run.record_surface(&self.gpu, &mut encoder, timer.as_ref());
             {
-                let writes = timer.as_ref().map(|t| t.writes(2));
+                let writes = timer.as_ref().map(|t| t.writes(4));
                 let mut pass = light_pass(&mut encoder, &run.targets, &hdr, writes);
-                run.shadows
-                    .record(&mut pass, &self.plan, 0..usize::MAX, |pass, number, _| {
-                        run.light.draw(pass, &binding, number);
-                    });
+                run.record_lights(&mut pass, &self.plan, 0..usize::MAX, &binding);
             }
             if let Some(timer) = &timer {
                 timer.resolve(&mut encoder);
@@ -232,11 +299,17 @@ impl Lab {
                 .map_err(|e| GpuError::Readback(e.to_string()))?;
             self.times.frame = ms_since(start);
             if let Some(timer) = &timer {
-                (self.times.gpu_surface, self.times.gpu_lights) = timer.read(&self.gpu)?;
+                let [surface, receivers, lights] = timer.read(&self.gpu)?;
+                self.times.gpu_surface = surface;
+                self.times.gpu_receivers = receivers;
+                self.times.gpu_lights = lights;
             }
             all.push(self.times);
         }
+        let first = all.first().map_or(0.0, |times| times.volumes);
         self.times = medians(&all[1.min(repeat)..]);
+        self.times.volumes_first = first;
+        self.calls = read_calls(&self.gpu, &run.shadows)?;
         let light = read_texture(&self.gpu, &hdr)?;
         Ok(Lit {
             size: view.size,
@@ -266,18 +339,31 @@ impl Lab {
         lights: &[StageLight],
         view: &View,
     ) -> Result<Mask, GpuError> {
-        let mut run = self.run(stage, view, LightDraw::Mark, VolumeColor::None)?;
+        let mut run = self.masking(stage, view)?;
+        self.mask_in(&mut run, stage, lights, view)
+    }
+
+    /// What [`Lab::mask_in`] draws with, for several masks of one view's size.
+    pub fn masking(&self, stage: &Stage, view: &View) -> Result<Run, GpuError> {
+        self.run(stage, view, LightDraw::Mark, VolumeColor::None)
+    }
+
+    /// As [`Lab::mask`], with buffers that keep what they hold from mask to mask.
+    pub fn mask_in(
+        &mut self,
+        run: &mut Run,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+    ) -> Result<Mask, GpuError> {
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
+            run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
+        }
+        self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
         let binding = run
             .light
             .bind(&self.gpu, &run.shadows, lights, &run.targets);
-        run.shadows.prepare(
-            &self.gpu.device,
-            &self.gpu.queue,
-            view,
-            &self.lights,
-            &self.volumes,
-            &self.plan,
-        )?;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let layer = texture(
             &self.gpu,
@@ -295,18 +381,11 @@ impl Lab {
                         label: Some("mask"),
                     });
             if first == 0 {
-                run.surface.record(&mut encoder, &run.targets, None);
+                run.record_surface(&self.gpu, &mut encoder, None);
             }
             {
                 let mut pass = light_pass(&mut encoder, &run.targets, &layer, None);
-                run.shadows.record(
-                    &mut pass,
-                    &self.plan,
-                    first..first + 32,
-                    |pass, number, _| {
-                        run.light.draw(pass, &binding, number);
-                    },
-                );
+                run.record_lights(&mut pass, &self.plan, first..first + 32, &binding);
             }
             self.gpu.queue.submit([encoder.finish()]);
             let bytes = read_texture(&self.gpu, &layer)?;
@@ -316,11 +395,23 @@ impl Lab {
                     .map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])),
             );
         }
+        self.calls = read_calls(&self.gpu, &run.shadows)?;
         Ok(Mask {
             size: view.size,
             lights: lights.len() as u32,
             words,
         })
+    }
+
+    /// What the renderer is to draw.
+    pub(crate) fn frame<'a>(&'a self, view: &'a View) -> Frame<'a> {
+        Frame {
+            view,
+            lights: &self.lights,
+            volumes: &self.volumes,
+            plan: &self.plan,
+            culls: self.culls,
+        }
     }
 
     /// What happens to surfaces before the near plane on this device.
@@ -332,11 +423,35 @@ impl Lab {
         }
     }
 
+    /// How a light was drawn in the last frame: as planned, or not at all because it reaches no
+    /// visible surface.
+    pub fn path(&self, light: usize) -> LightPath {
+        let planned = self.plan.lights[light].path;
+        let unseen = self
+            .calls
+            .get(light)
+            .is_some_and(|c| c.light.instance_count == 0);
+        match planned {
+            LightPath::Skipped(_) => planned,
+            _ if unseen => LightPath::Skipped(SkipReason::NoVisibleReceiver),
+            _ => planned,
+        }
+    }
+
+    /// Quads of a light that the last frame drew.
+    pub fn quads_drawn(&self, light: usize) -> u32 {
+        match (self.path(light), self.calls.get(light)) {
+            (LightPath::Skipped(_), _) => 0,
+            (_, Some(calls)) => calls.sides.vertex_count / 6,
+            (_, None) => self.plan.lights[light].quads.len() as u32,
+        }
+    }
+
     /// Lights drawn by each path: z-pass, z-fail, skipped.
     pub fn lights_by_path(&self) -> [usize; 3] {
         let mut counts = [0; 3];
-        for light in &self.plan.lights {
-            counts[match light.path {
+        for light in 0..self.plan.lights.len() {
+            counts[match self.path(light) {
                 LightPath::ZPass { .. } => 0,
                 LightPath::ZFail(_) => 1,
                 LightPath::Skipped(_) => 2,
@@ -378,8 +493,9 @@ pub(crate) fn light_pass<'e>(
     })
 }
 
-/// Begin and end of the two GPU stages.
-struct Timer {
+/// Begin and end of the three GPU stages.
+#[derive(Debug)]
+pub(crate) struct Timer {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     readable: wgpu::Buffer,
@@ -387,7 +503,7 @@ struct Timer {
 }
 
 impl Timer {
-    const QUERIES: u32 = 4;
+    const QUERIES: u32 = 6;
 
     fn new(gpu: &Gpu) -> Option<Self> {
         let ns = gpu.timestamp_ns?;
@@ -420,19 +536,27 @@ impl Timer {
         }
     }
 
+    fn compute_writes(&self, first: u32) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        }
+    }
+
     fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.set, 0..Self::QUERIES, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
     }
 
-    fn read(&self, gpu: &Gpu) -> Result<(f64, f64), GpuError> {
+    fn read(&self, gpu: &Gpu) -> Result<[f64; 3], GpuError> {
         let bytes = read_buffer(gpu, &self.readable)?;
         let ticks: Vec<u64> = bytes
             .chunks_exact(8)
             .map(|t| t.iter().rev().fold(0, |sum, &b| sum << 8 | u64::from(b)))
             .collect();
         let ms = |i: usize| ticks[i + 1].saturating_sub(ticks[i]) as f64 * f64::from(self.ns) / 1e6;
-        Ok((ms(0), ms(2)))
+        Ok([0, 2, 4].map(ms))
     }
 }
 
@@ -448,10 +572,12 @@ fn medians(all: &[StageTimes]) -> StageTimes {
     };
     StageTimes {
         volumes: median(|t| t.volumes),
+        volumes_first: 0.0,
         plan: median(|t| t.plan),
         upload: median(|t| t.upload),
         record: median(|t| t.record),
         gpu_surface: median(|t| t.gpu_surface),
+        gpu_receivers: median(|t| t.gpu_receivers),
         gpu_lights: median(|t| t.gpu_lights),
         frame: median(|t| t.frame),
     }

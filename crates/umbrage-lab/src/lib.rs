@@ -13,3 +13,5 @@ pub mod readback;
 pub mod saved_world;
 pub mod seeded_lights;
 pub mod stage;
+
+pub use umbrage::{Cull, Culls, Uploaded};

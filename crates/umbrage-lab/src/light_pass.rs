@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
-use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer};
+use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer, light_wgsl};
 use wgpu::util::DeviceExt as _;
 use wgpu::{RenderPipeline, TextureFormat};
 
@@ -88,7 +88,9 @@ pub struct LightPass {
 impl LightPass {
     /// Compiles it for the stencil that `shadows` leaves.
     pub fn new(gpu: &Gpu, shadows: &ShadowRenderer, draw: LightDraw) -> Self {
-        let source = format!("{CLIP_WGSL}\n{}", include_str!("shaders/light.wgsl"));
+        let placing = light_wgsl(1);
+        let shading = include_str!("shaders/light.wgsl");
+        let source = format!("{CLIP_WGSL}\n{placing}\n{shading}");
         let module = gpu
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -117,7 +119,10 @@ impl LightPass {
                     layout: Some(&gpu.device.create_pipeline_layout(
                         &wgpu::PipelineLayoutDescriptor {
                             label: Some("light"),
-                            bind_group_layouts: &[Some(&layout)],
+                            bind_group_layouts: &[
+                                Some(&layout),
+                                Some(shadows.light_bind_group_layout()),
+                            ],
                             immediate_size: 0,
                         },
                     )),
@@ -194,10 +199,17 @@ impl LightPass {
     }
 
     /// Draws light `number` over the scissor that is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, binding: &LightBinding, number: usize) {
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        shadows: &ShadowRenderer,
+        binding: &LightBinding,
+        number: usize,
+    ) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &binding.0, &[]);
-        pass.draw(0..3, number as u32..number as u32 + 1);
+        pass.set_bind_group(1, shadows.light_bind_group(), &[]);
+        shadows.draw_light(pass, number);
     }
 }
 

@@ -1,28 +1,13 @@
-//! Storage buffers: the world's, written once, and the frame's, which grow.
+//! Storage buffers that follow arrays on the CPU, upload what changed, and grow.
 
-use wgpu::util::DeviceExt as _;
+use std::ops::Range;
+
 use wgpu::{Buffer, BufferUsages, Device, Queue};
 
 use crate::RenderError;
 
-/// A read-only storage buffer with `bytes` in it; never empty, because a binding cannot be.
-pub(crate) fn storage(
-    device: &Device,
-    label: &'static str,
-    bytes: &[u8],
-) -> Result<Buffer, RenderError> {
-    check_size(device, label, bytes.len() as u64)?;
-    let contents = if bytes.is_empty() { &[0; 16] } else { bytes };
-    Ok(
-        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(label),
-            contents,
-            usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-        }),
-    )
-}
-
-fn check_size(device: &Device, what: &'static str, needed: u64) -> Result<(), RenderError> {
+/// The most bytes a storage buffer may have, if that is enough.
+fn check_size(device: &Device, what: &'static str, needed: u64) -> Result<u64, RenderError> {
     let limits = device.limits();
     let limit = limits
         .max_storage_buffer_binding_size
@@ -34,54 +19,102 @@ fn check_size(device: &Device, what: &'static str, needed: u64) -> Result<(), Re
             limit,
         });
     }
-    Ok(())
+    Ok(limit)
 }
 
-/// A storage buffer that is rewritten each frame and replaced only when it must grow.
+/// A storage buffer that follows an array on the CPU and is replaced only when it must grow.
 #[derive(Debug)]
 pub(crate) struct Growing {
     label: &'static str,
+    usage: BufferUsages,
     pub(crate) buffer: Buffer,
+    /// What it holds, where the caller has no other way of knowing.
+    copy: Vec<u8>,
+}
+
+/// What a write did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Written {
+    /// Bytes handed to the queue.
+    pub(crate) bytes: u64,
+    /// The buffer was replaced, so that bind groups must be too.
+    pub(crate) replaced: bool,
+}
+
+impl std::ops::AddAssign for Written {
+    fn add_assign(&mut self, other: Self) {
+        self.bytes += other.bytes;
+        self.replaced |= other.replaced;
+    }
 }
 
 impl Growing {
-    pub(crate) fn new(device: &Device, label: &'static str) -> Self {
+    pub(crate) fn new(device: &Device, label: &'static str, usage: BufferUsages) -> Self {
+        let usage = usage | BufferUsages::STORAGE | BufferUsages::COPY_DST;
         Self {
             label,
-            buffer: Self::allocate(device, label, 4096),
+            usage,
+            buffer: allocate(device, label, 4096, usage),
+            copy: Vec::new(),
         }
     }
 
-    /// Writes `bytes`; true if the buffer was replaced, so that bind groups must be too.
+    /// Makes room for `needed` bytes; true if the buffer was replaced and so holds nothing.
+    pub(crate) fn reserve(&mut self, device: &Device, needed: u64) -> Result<bool, RenderError> {
+        let limit = check_size(device, self.label, needed)?;
+        let short = needed > self.buffer.size();
+        if short {
+            let size = (needed + needed / 2).next_multiple_of(256).min(limit & !3);
+            self.buffer = allocate(device, self.label, size, self.usage);
+        }
+        Ok(short)
+    }
+
+    /// Brings it up to date with `bytes`, of which only `changed` differ from what it was given
+    /// last.
+    pub(crate) fn write_changed(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        bytes: &[u8],
+        changed: impl Iterator<Item = Range<usize>>,
+    ) -> Result<Written, RenderError> {
+        if self.reserve(device, bytes.len() as u64)? {
+            queue.write_buffer(&self.buffer, 0, bytes);
+            return Ok(Written {
+                bytes: bytes.len() as u64,
+                replaced: true,
+            });
+        }
+        let mut written = Written::default();
+        for range in changed {
+            queue.write_buffer(&self.buffer, range.start as u64, &bytes[range.clone()]);
+            written.bytes += range.len() as u64;
+        }
+        Ok(written)
+    }
+
+    /// Writes `bytes` unless it holds them already.
     pub(crate) fn write(
         &mut self,
         device: &Device,
         queue: &Queue,
         bytes: &[u8],
-    ) -> Result<bool, RenderError> {
-        let needed = bytes.len() as u64;
-        check_size(device, self.label, needed)?;
-        let replaced = needed > self.buffer.size();
-        if replaced {
-            let limits = device.limits();
-            let limit = limits
-                .max_storage_buffer_binding_size
-                .min(limits.max_buffer_size);
-            let size = (needed + needed / 2).next_multiple_of(256).min(limit & !3);
-            self.buffer = Self::allocate(device, self.label, size);
+    ) -> Result<Written, RenderError> {
+        if self.copy == bytes {
+            return Ok(Written::default());
         }
-        if needed > 0 {
-            queue.write_buffer(&self.buffer, 0, bytes);
-        }
-        Ok(replaced)
+        self.copy.clear();
+        self.copy.extend_from_slice(bytes);
+        self.write_changed(device, queue, bytes, std::iter::once(0..bytes.len()))
     }
+}
 
-    fn allocate(device: &Device, label: &'static str, size: u64) -> Buffer {
-        device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
-    }
+fn allocate(device: &Device, label: &'static str, size: u64, usage: BufferUsages) -> Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
 }

@@ -13,14 +13,24 @@
 
 mod buffers;
 mod pipelines;
+mod receivers;
 mod renderer;
+mod world;
 
+pub use receivers::{Call, LightCalls};
 pub use renderer::{
-    LIGHT_STENCIL, RenderError, RendererOptions, ShadowRenderer, ViewUniform, VolumeColor,
+    Frame, LIGHT_STENCIL, RenderError, RendererOptions, ShadowRenderer, Uploaded, ViewUniform,
+    VolumeColor,
 };
 
 /// WGSL of `struct View` and `umbrage_clip`, for the host's own shaders. The layout of the
 /// uniform is [`ViewUniform`].
 pub const CLIP_WGSL: &str = include_str!("shaders/clip.wgsl");
+
+/// WGSL of `umbrage_light_corner`, for the vertex shaders of the host's light draws; goes with
+/// [`CLIP_WGSL`], and reads [`ShadowRenderer::light_bind_group`] at bind group number `group`.
+pub fn light_wgsl(group: u32) -> String {
+    include_str!("shaders/light.wgsl").replace("UMBRAGE_LIGHT_GROUP", &group.to_string())
+}
 
 const VOLUME_WGSL: &str = include_str!("shaders/volume.wgsl");

@@ -15,6 +15,7 @@ pub(crate) struct Pipelines {
     pub(crate) zfail_sides: RenderPipeline,
     pub(crate) zfail_caps: RenderPipeline,
     pub(crate) zfail_reversed_caps: RenderPipeline,
+    pub(crate) clean: RenderPipeline,
 }
 
 /// When a side or cap counts.
@@ -26,6 +27,8 @@ enum Counts {
     Behind,
     /// The same for triangles taken with reversed winding.
     BehindReversed,
+    /// Everywhere, to zero.
+    Clean,
 }
 
 impl Pipelines {
@@ -51,6 +54,7 @@ impl Pipelines {
             zfail_sides: build("umbrage z-fail sides", "zfail_side", Counts::Behind),
             zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind),
             zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed),
+            clean: build("umbrage clean", "everywhere", Counts::Clean),
         }
     }
 }
@@ -70,11 +74,16 @@ fn pipeline(
         depth_fail_op,
         pass_op,
     };
-    use StencilOperation::{DecrementWrap, IncrementWrap, Keep};
+    use StencilOperation::{DecrementWrap, IncrementWrap, Keep, Zero};
     let (front, back) = match counts {
         Counts::InFront => (face(IncrementWrap, Keep), face(DecrementWrap, Keep)),
         Counts::Behind => (face(Keep, DecrementWrap), face(Keep, IncrementWrap)),
         Counts::BehindReversed => (face(Keep, IncrementWrap), face(Keep, DecrementWrap)),
+        Counts::Clean => (face(Zero, Zero), face(Zero, Zero)),
+    };
+    let volume_color = match counts {
+        Counts::Clean => VolumeColor::None,
+        _ => options.volume_color,
     };
     // The pass has the host's colour targets; volumes leave them alone, but for debug views.
     let add = wgpu::BlendComponent {
@@ -82,7 +91,7 @@ fn pipeline(
         dst_factor: wgpu::BlendFactor::One,
         operation: wgpu::BlendOperation::Add,
     };
-    let (entry_point, visible) = match options.volume_color {
+    let (entry_point, visible) = match volume_color {
         VolumeColor::None => ("nothing", None),
         VolumeColor::Fragments => (
             "one",

@@ -2,18 +2,21 @@
 
 use bytemuck::{Pod, Zeroable};
 use thiserror::Error;
+use umbrage_core::cull::{Cull, Culls};
 use umbrage_core::frame::{FramePlan, LightPath, LightPlan};
-use umbrage_core::volume::Volumes;
+use umbrage_core::volume::{Version, Volumes};
 use umbrage_core::world::World;
 use umbrage_core::{Light, View};
 use wgpu::{
-    BindGroup, BindGroupLayout, Buffer, CompareFunction, DepthBiasState, DepthStencilState, Device,
-    Queue, RenderPass, ShaderStages, StencilFaceState, StencilOperation, StencilState,
-    TextureFormat,
+    BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, CompareFunction,
+    DepthBiasState, DepthStencilState, Device, Queue, RenderPass, ShaderStages, StencilFaceState,
+    StencilOperation, StencilState, TextureFormat, TextureView,
 };
 
-use crate::buffers::{Growing, storage};
+use crate::buffers::Growing;
 use crate::pipelines::Pipelines;
+use crate::receivers::{Inputs, LightCalls, Receivers, tile_rows};
+use crate::world::WorldBuffers;
 
 /// What the host's frame looks like.
 #[derive(Clone, Debug)]
@@ -68,6 +71,30 @@ pub enum RenderError {
     NoWorld,
 }
 
+/// What is drawn in one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// The eye.
+    pub view: &'a View,
+    /// As given to the volume builder.
+    pub lights: &'a [Light],
+    /// Their volumes.
+    pub volumes: &'a Volumes,
+    /// How each is drawn; made from the three above.
+    pub plan: &'a FramePlan,
+    /// Which steps skip work on the GPU.
+    pub culls: Culls,
+}
+
+/// Bytes that one [`ShadowRenderer::prepare`] handed to the queue.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Uploaded {
+    /// Quads and caps.
+    pub volume_bytes: u64,
+    /// The view, the lights' positions, and their scissors and ranges of quads.
+    pub other_bytes: u64,
+}
+
 /// The uniform behind `struct View` of [`CLIP_WGSL`](crate::CLIP_WGSL).
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -80,6 +107,8 @@ pub struct ViewUniform {
     near: f32,
     forward: [f32; 3],
     width: f32,
+    height: f32,
+    unused: [f32; 3],
 }
 
 impl From<&View> for ViewUniform {
@@ -93,6 +122,8 @@ impl From<&View> for ViewUniform {
             near: view.near,
             forward: view.forward.to_array(),
             width: view.size[0] as f32,
+            height: view.size[1] as f32,
+            unused: [0.0; 3],
         }
     }
 }
@@ -111,20 +142,34 @@ pub struct ShadowRenderer {
     pipelines: Pipelines,
     layout: BindGroupLayout,
     view: Buffer,
+    view_size: [u32; 2],
     quads: Growing,
+    /// Which quads that buffer holds.
+    quads_version: Version,
     caps: Growing,
     lights: Growing,
-    world: Option<WorldBuffers>,
-    bind_group: Option<BindGroup>,
+    light_count: u32,
+    world: WorldBuffers,
+    /// With all quads, and with those that the receivers keep.
+    bind_groups: Option<[BindGroup; 2]>,
+    receivers: Option<Receivers>,
+    found: Found,
+    /// Where lights are drawn: `UmbrageSpans` of the shaders.
+    spans: Growing,
+    light_layout: BindGroupLayout,
+    light_bind_group: Option<BindGroup>,
     depth_stencil_format: TextureFormat,
 }
 
-/// The static geometry, for the host's own passes too.
-#[derive(Debug)]
-struct WorldBuffers {
-    positions: Buffer,
-    edges: Buffer,
-    triangles: Buffer,
+/// How far the receivers of this frame are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Found {
+    /// Not asked for.
+    No,
+    /// The plan is uploaded; the depth buffer was not looked at yet.
+    Planned,
+    /// Draws are indirect.
+    Yes,
 }
 
 impl ShadowRenderer {
@@ -134,88 +179,173 @@ impl ShadowRenderer {
             return Err(RenderError::NoStencil(options.depth_stencil_format));
         }
         let layout = bind_group_layout(device);
+        let growing = |label| Growing::new(device, label, BufferUsages::empty());
         Ok(Self {
             pipelines: Pipelines::new(device, options, &layout),
             view: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("umbrage view"),
                 size: size_of::<ViewUniform>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
-            quads: Growing::new(device, "umbrage quads"),
-            caps: Growing::new(device, "umbrage caps"),
-            lights: Growing::new(device, "umbrage lights"),
-            world: None,
-            bind_group: None,
+            view_size: [0; 2],
+            quads: growing("umbrage quads"),
+            quads_version: Version::default(),
+            caps: growing("umbrage caps"),
+            lights: growing("umbrage lights"),
+            light_count: 0,
+            world: WorldBuffers::new(device),
+            bind_groups: None,
             layout,
+            receivers: Receivers::new(device, options.sample_count),
+            found: Found::No,
+            spans: growing("umbrage spans"),
+            light_layout: light_layout(device),
+            light_bind_group: None,
             depth_stencil_format: options.depth_stencil_format,
         })
     }
 
-    /// Uploads positions, edges and triangles; once a world.
-    pub fn upload_world(&mut self, device: &Device, world: &World) -> Result<(), RenderError> {
-        let buffer = |label, bytes| storage(device, label, bytes);
-        self.world = Some(WorldBuffers {
-            positions: buffer("umbrage positions", bytemuck::cast_slice(&world.positions))?,
-            edges: buffer("umbrage edges", bytemuck::cast_slice(&world.edges.vertices))?,
-            triangles: buffer("umbrage triangles", bytemuck::cast_slice(&world.triangles))?,
-        });
-        self.bind_group = None;
-        Ok(())
+    /// Brings positions, edges and triangles on the GPU up to date: everything for a world not
+    /// seen yet, later what objects changed. True if [`ShadowRenderer::world_buffers`] were
+    /// replaced, so that the host's bind groups must be too.
+    pub fn upload_world(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        world: &World,
+    ) -> Result<bool, RenderError> {
+        let written = self.world.update(device, queue, world)?;
+        if written.replaced {
+            self.bind_groups = None;
+        }
+        Ok(written.replaced)
     }
 
-    /// Uploads what this frame's plan draws; gives the bytes written.
+    /// Uploads what this frame's plan draws and the GPU does not have yet.
     pub fn prepare(
         &mut self,
         device: &Device,
         queue: &Queue,
-        view: &View,
-        lights: &[Light],
-        volumes: &Volumes,
-        plan: &FramePlan,
-    ) -> Result<u64, RenderError> {
-        let world = self.world.as_ref().ok_or(RenderError::NoWorld)?;
-        let homogeneous: Vec<[f32; 4]> = lights.iter().map(Light::homogeneous).collect();
-        let view = ViewUniform::from(view);
-        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
-        let quads: &[u8] = bytemuck::cast_slice(&volumes.quads);
-        let caps: &[u8] = bytemuck::cast_slice(&plan.caps);
-        let points: &[u8] = bytemuck::cast_slice(&homogeneous);
-        let replaced = [
-            self.quads.write(device, queue, quads)?,
-            self.caps.write(device, queue, caps)?,
-            self.lights.write(device, queue, points)?,
-        ];
-        if replaced.contains(&true) || self.bind_group.is_none() {
-            let buffers = [
-                &self.view,
-                &world.positions,
-                &world.edges,
-                &world.triangles,
-                &self.quads.buffer,
-                &self.caps.buffer,
-                &self.lights.buffer,
-            ];
-            let entries: Vec<_> = (0..)
-                .zip(buffers)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                    binding,
-                    resource: buffer.as_entire_binding(),
-                })
-                .collect();
-            self.bind_group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("umbrage volume"),
-                layout: &self.layout,
-                entries: &entries,
-            }));
+        frame: &Frame<'_>,
+    ) -> Result<Uploaded, RenderError> {
+        if !self.world.is_filled() {
+            return Err(RenderError::NoWorld);
         }
-        Ok((quads.len() + caps.len() + points.len() + size_of::<ViewUniform>()) as u64)
+        let homogeneous: Vec<[f32; 4]> = frame.lights.iter().map(Light::homogeneous).collect();
+        let view = ViewUniform::from(frame.view);
+        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        self.view_size = frame.view.size;
+        self.light_count = frame.lights.len() as u32;
+        let quads = &frame.volumes.quads;
+        let item = size_of_val(&quads[..])
+            .checked_div(quads.len())
+            .unwrap_or(0);
+        let changed = frame.volumes.quads_since(self.quads_version);
+        let changed = changed.map(|r| r.start * item..r.end * item);
+        let bytes = bytemuck::cast_slice(quads);
+        let mut volumes = self.quads.write_changed(device, queue, bytes, changed)?;
+        self.quads_version = frame.volumes.quads_version();
+        let caps = bytemuck::cast_slice(&frame.plan.caps);
+        volumes += self.caps.write(device, queue, caps)?;
+        let points = bytemuck::cast_slice(&homogeneous);
+        let mut others = self.lights.write(device, queue, points)?;
+        self.found = Found::No;
+        let asked = frame.culls.has(Cull::Receivers) || frame.culls.has(Cull::Quads);
+        if let Some(receivers) = self.receivers.as_mut().filter(|_| asked) {
+            others += receivers.prepare(device, queue, frame)?;
+            self.found = Found::Planned;
+        }
+        let rows = match self.found {
+            Found::No => 0,
+            _ => tile_rows(frame.view),
+        };
+        let spans = 4 + 4 * u64::from(rows) * u64::from(self.light_count);
+        if self.spans.reserve(device, spans)? || self.light_bind_group.is_none() {
+            self.light_bind_group = Some(self.bind_light(device));
+        }
+        queue.write_buffer(&self.spans.buffer, 0, bytemuck::bytes_of(&rows));
+        if volumes.replaced || others.replaced || self.bind_groups.is_none() {
+            let kept = self.receivers.as_ref().map(|r| &r.kept_quads);
+            let quads = [&self.quads, kept.unwrap_or(&self.quads)];
+            self.bind_groups = Some(quads.map(|quads| self.bind(device, &quads.buffer)));
+        }
+        Ok(Uploaded {
+            volume_bytes: volumes.bytes,
+            other_bytes: others.bytes + size_of::<ViewUniform>() as u64 + 4,
+        })
+    }
+
+    fn bind(&self, device: &Device, quads: &Buffer) -> BindGroup {
+        let [positions, edges, triangles] = self.world.buffers();
+        let (caps, lights) = (&self.caps.buffer, &self.lights.buffer);
+        let buffers = [&self.view, positions, edges, triangles, quads, caps, lights];
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("umbrage volume"),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+
+    fn bind_light(&self, device: &Device) -> BindGroup {
+        let entries = [(0, &self.view), (1, &self.spans.buffer)].map(|(binding, buffer)| {
+            wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            }
+        });
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("umbrage light"),
+            layout: &self.light_layout,
+            entries: &entries,
+        })
+    }
+
+    /// Finds out from the host's finished depth buffer which lights reach visible surface, and
+    /// which of their quads matter for it; [`ShadowRenderer::record`] then draws no more than
+    /// that. Record it between the depth pass and the light pass. Does nothing where the device has
+    /// no `INDIRECT_FIRST_INSTANCE`, with more than one sample a pixel, or if the frame's culls
+    /// want neither.
+    ///
+    /// `depth` is a depth-only view of the texture, of the size of the view that was prepared.
+    pub fn find_receivers(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        depth: &TextureView,
+        timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        let Some(receivers) = &self.receivers else {
+            return;
+        };
+        if self.found == Found::No || self.light_count == 0 {
+            return;
+        }
+        let [positions, edges, _] = self.world.buffers();
+        let inputs = Inputs {
+            view: &self.view,
+            positions,
+            edges,
+            quads: &self.quads.buffer,
+            spans: &self.spans.buffer,
+            depth,
+        };
+        let (size, lights) = (self.view_size, self.light_count);
+        receivers.record(device, encoder, &inputs, size, lights, timestamps);
+        self.found = Found::Yes;
     }
 
     /// Records the volumes of the plan's lights numbered `lights`, calling `draw_light` for each
-    /// after its volume, with scissor and stencil reference set. `draw_light` must draw over the
-    /// whole scissor with [`ShadowRenderer::light_depth_stencil`]: that is what leaves the stencil
-    /// clean for the next light.
+    /// after its volume, with scissor and stencil reference set. There the host sets a pipeline
+    /// made with [`ShadowRenderer::light_depth_stencil`] and its bind groups, and calls
+    /// [`ShadowRenderer::draw_light`]. The stencil is zero again after each light.
     pub fn record(
         &self,
         pass: &mut RenderPass<'_>,
@@ -223,33 +353,79 @@ impl ShadowRenderer {
         lights: std::ops::Range<usize>,
         mut draw_light: impl FnMut(&mut RenderPass<'_>, usize, &LightPlan),
     ) {
-        let Some(bind_group) = &self.bind_group else {
+        let Some(bind_groups) = &self.bind_groups else {
             return;
         };
-        for (number, light) in plan.drawn().filter(|(i, _)| lights.contains(i)) {
+        let calls = self.calls();
+        let bind_group = &bind_groups[usize::from(calls.is_some())];
+        let drawn = plan.drawn().filter(|(i, _)| lights.contains(i));
+        for (number, light) in drawn.filter(|(_, light)| !light.scissor.is_empty()) {
             let s = light.scissor;
             pass.set_scissor_rect(s.x, s.y, s.width, s.height);
-            let instance = number as u32..number as u32 + 1;
-            let zpass = matches!(light.path, LightPath::ZPass { .. });
-            let sides = if zpass {
-                &self.pipelines.zpass_sides
-            } else {
-                &self.pipelines.zfail_sides
+            let sides = match light.path {
+                LightPath::ZPass { .. } => &self.pipelines.zpass_sides,
+                _ => &self.pipelines.zfail_sides,
             };
-            for (range, pipeline) in [
-                (&light.quads, sides),
-                (&light.caps, &self.pipelines.zfail_caps),
-                (&light.reversed_caps, &self.pipelines.zfail_reversed_caps),
+            let reversed = &self.pipelines.zfail_reversed_caps;
+            for (range, pipeline, offset) in [
+                (&light.quads, sides, LightCalls::SIDES),
+                (&light.caps, &self.pipelines.zfail_caps, LightCalls::CAPS),
+                (&light.reversed_caps, reversed, LightCalls::REVERSED_CAPS),
             ] {
-                if !range.is_empty() {
-                    pass.set_pipeline(pipeline);
-                    pass.set_bind_group(0, bind_group, &[]);
-                    pass.draw(6 * range.start..6 * range.end, instance.clone());
+                if range.is_empty() {
+                    continue;
+                }
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, bind_group, &[]);
+                match calls {
+                    Some(calls) => {
+                        pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
+                    }
+                    None => {
+                        let instance = number as u32..number as u32 + 1;
+                        pass.draw(6 * range.start..6 * range.end, instance);
+                    }
                 }
             }
             pass.set_stencil_reference(u32::from(light.stencil_reference));
             draw_light(pass, number, light);
+            if let Some(calls) = calls {
+                pass.set_pipeline(&self.pipelines.clean);
+                pass.set_bind_group(0, bind_group, &[]);
+                pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
+            }
         }
+    }
+
+    /// The draw of light number `light` for the host's own pipeline and bind groups; the instance
+    /// index is the light's number, and the vertex shader places its vertices with
+    /// `umbrage_light_corner` of [`light_wgsl`](crate::light_wgsl). Draws nothing if the light
+    /// reaches no visible surface.
+    pub fn draw_light(&self, pass: &mut RenderPass<'_>, light: usize) {
+        match self.calls() {
+            Some(calls) => {
+                pass.draw_indirect(calls, light as u64 * LightCalls::SIZE + LightCalls::LIGHT);
+            }
+            None => pass.draw(0..3, light as u32..light as u32 + 1),
+        }
+    }
+
+    /// Layout of what `umbrage_light_corner` reads.
+    pub fn light_bind_group_layout(&self) -> &BindGroupLayout {
+        &self.light_layout
+    }
+
+    /// What `umbrage_light_corner` reads; `None` before [`ShadowRenderer::prepare`], which may
+    /// replace it.
+    pub fn light_bind_group(&self) -> Option<&BindGroup> {
+        self.light_bind_group.as_ref()
+    }
+
+    /// The [`LightCalls`] of this frame, one a light, if receivers were found; entries of lights
+    /// that the plan skips mean nothing.
+    pub fn calls(&self) -> Option<&Buffer> {
+        let receivers = self.receivers.as_ref()?;
+        (self.found == Found::Yes).then_some(&receivers.calls.buffer)
     }
 
     /// Depth and stencil state for the host's light draws: passes where the light's volume left
@@ -272,7 +448,8 @@ impl ShadowRenderer {
     /// The uploaded positions (tightly packed f32 triples) and triangles (u32 triples), for the
     /// host's depth pass; `None` before [`ShadowRenderer::upload_world`].
     pub fn world_buffers(&self) -> Option<(&Buffer, &Buffer)> {
-        self.world.as_ref().map(|w| (&w.positions, &w.triangles))
+        let [positions, _, triangles] = self.world.buffers();
+        self.world.is_filled().then_some((positions, triangles))
     }
 
     /// The [`ViewUniform`] of the last [`ShadowRenderer::prepare`].
@@ -282,9 +459,23 @@ impl ShadowRenderer {
 }
 
 fn bind_group_layout(device: &Device) -> BindGroupLayout {
+    uniform_and_storage(device, "umbrage volume", ShaderStages::VERTEX, 6)
+}
+
+fn light_layout(device: &Device) -> BindGroupLayout {
+    uniform_and_storage(device, "umbrage light", ShaderStages::VERTEX_FRAGMENT, 1)
+}
+
+/// A uniform buffer, then read-only storage buffers.
+fn uniform_and_storage(
+    device: &Device,
+    label: &str,
+    visibility: ShaderStages,
+    storage_buffers: u32,
+) -> BindGroupLayout {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: ShaderStages::VERTEX,
+        visibility,
         ty: wgpu::BindingType::Buffer {
             ty,
             has_dynamic_offset: false,
@@ -294,9 +485,9 @@ fn bind_group_layout(device: &Device) -> BindGroupLayout {
     };
     let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform)];
     let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    entries.extend((1..7).map(|binding| entry(binding, storage)));
+    entries.extend((1..=storage_buffers).map(|binding| entry(binding, storage)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("umbrage volume"),
+        label: Some(label),
         entries: &entries,
     })
 }

@@ -61,9 +61,11 @@ pub use umbrage_core::frame::{
     self, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect, SkipReason, ZFailReason,
 };
 pub use umbrage_core::volume::{self, VolumeBuilder, Volumes};
-pub use umbrage_core::world::{self, SavedWorldError, World, WorldError, WorldReport};
-pub use umbrage_core::{Casting, Fingerprint, Light, LightShape, Mesh, View};
+pub use umbrage_core::world::{
+    self, ObjectError, ObjectId, Pose, SavedWorldError, World, WorldError, WorldReport,
+};
+pub use umbrage_core::{Casting, Cull, Culls, Fingerprint, Light, LightShape, Mesh, View};
 pub use umbrage_wgpu::{
-    CLIP_WGSL, LIGHT_STENCIL, RenderError, RendererOptions, ShadowRenderer, ViewUniform,
-    VolumeColor,
+    CLIP_WGSL, Frame, LIGHT_STENCIL, LightCalls, RenderError, RendererOptions, ShadowRenderer,
+    Uploaded, ViewUniform, VolumeColor, light_wgsl,
 };

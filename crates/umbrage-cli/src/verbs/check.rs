@@ -1,7 +1,7 @@
 //! `umbrage check`: a method's masks against the oracle's, counted.
 
 use umbrage_core::Light;
-use umbrage_core::frame::{LightPath, LightPlan};
+use umbrage_core::frame::LightPath;
 use umbrage_lab::gpu::Gpu;
 use umbrage_lab::lab::Lab;
 use umbrage_scene::Progress as _;
@@ -40,6 +40,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
     let bar = Bar::new(args.common.results.quiet);
     bar.stage("open adapter", 0);
     let mut lab = Lab::new(Gpu::open(&run.adapter)?);
+    lab.culls = run.culls();
     bar.stage("draw masks", 0);
     lab.prepare(stage, lights, view, method);
     let mask = lab.mask(stage, lights, view)?;
@@ -47,10 +48,10 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
     let oracle = Oracle::new(&stage.mesh);
     bar.stage("judge", u64::from(view.size[0]) * u64::from(view.size[1]));
     let plain: Vec<Light> = lights.iter().map(|light| light.light).collect();
-    let skipped = |light: &LightPlan| matches!(light.path, LightPath::Skipped(_));
+    let skipped = |light| matches!(lab.path(light), LightPath::Skipped(_));
     let options = JudgeOptions::default()
         .with_near(lab.near_clip())
-        .with_skipped(lab.plan.lights.iter().map(skipped).collect());
+        .with_skipped((0..lights.len()).map(skipped).collect());
     let found = judge(&oracle, view, &plain, &mask, &options, &|done, _| {
         bar.advance(done);
     });

@@ -36,6 +36,7 @@ fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> 
     let bar = Bar::new(args.common.results.quiet);
     bar.stage("open adapter", 0);
     let mut lab = Lab::new(Gpu::open(&run.adapter)?);
+    lab.culls = run.culls();
     bar.stage("draw", 0);
     let method = run.method.0;
     let lit = lab.render(stage, lights, view, method, run.repeat.get())?;
@@ -64,28 +65,25 @@ fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> 
 }
 
 fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
-    let reports = setting
-        .lights
-        .iter()
-        .zip(&lab.volumes.lights)
-        .zip(&lab.plan.lights);
+    let reports = setting.lights.iter().zip(&lab.volumes.lights);
     let lights: Vec<LightReport> = reports
         .enumerate()
-        .map(|(number, ((light, volume), plan))| LightReport {
+        .map(|(number, (light, volume))| LightReport {
             name: light.name.clone(),
             kind: light.kind().to_owned(),
             range: (!light.light.is_directional()).then_some(light.light.range),
             subset_triangles: u64::from(volume.subset_triangles),
             facing_triangles: u64::from(volume.facing_triangles),
             quads: volume.quads.len() as u64,
+            quads_drawn: u64::from(lab.quads_drawn(number)),
             cap_triangles: lab.plan.cap_triangles(number) as u64,
-            path: match plan.path {
+            path: match lab.path(number) {
                 LightPath::ZPass { .. } => PathTaken::Zpass,
                 LightPath::ZFail(_) => PathTaken::Zfail,
                 LightPath::Skipped(_) => PathTaken::Skipped,
             },
-            reason: plan.path.reason().to_owned(),
-            cached: false,
+            reason: lab.path(number).reason().to_owned(),
+            cached: volume.cached,
             build_us: f64::from(volume.build_us),
             gpu_us: None,
         })
@@ -93,10 +91,12 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
     let times = &lab.times;
     let stages = [
         ("volumes", times.volumes),
+        ("volumes_first", times.volumes_first),
         ("plan", times.plan),
         ("upload", times.upload),
         ("record", times.record),
         ("gpu_surface", times.gpu_surface),
+        ("gpu_receivers", times.gpu_receivers),
         ("gpu_lights", times.gpu_lights),
     ];
     RenderReport {
@@ -106,7 +106,7 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
         size: setting.view.size,
         frame_ms: times.frame,
         stages_ms: stages.map(|(name, ms)| (name.to_owned(), ms)).into(),
-        totals: RenderTotals::of(&lights, lab.uploaded_bytes),
+        totals: RenderTotals::of(&lights, lab.uploaded),
         lights,
     }
 }
@@ -153,18 +153,20 @@ fn table(report: &RenderReport) -> Table {
         .count("  skipped", totals.lights_skipped)
         .count("subset triangles", totals.subset_triangles)
         .count("facing triangles", totals.facing_triangles)
+        .count("quads", totals.quads)
         .count("polygons", totals.polygons)
-        .count("  quads", totals.quads)
+        .count("  quads drawn", totals.quads_drawn)
         .count("  cap triangles", totals.cap_triangles)
-        .count("uploaded bytes", totals.uploaded_bytes);
+        .count("uploaded bytes", totals.uploaded_bytes)
+        .count("  of volumes", totals.uploaded_volume_bytes);
     let mut costly: Vec<&LightReport> = report
         .lights
         .iter()
         .filter(|light| light.path != PathTaken::Skipped)
         .collect();
-    costly.sort_by_key(|light| std::cmp::Reverse(light.quads + light.cap_triangles));
+    costly.sort_by_key(|light| std::cmp::Reverse(light.quads_drawn + light.cap_triangles));
     for light in costly.iter().take(LISTED) {
-        let polygons = grouped(light.quads + light.cap_triangles);
+        let polygons = grouped(light.quads_drawn + light.cap_triangles);
         table.row([
             format!("light {}", light.name),
             format!("{polygons} polygons"),

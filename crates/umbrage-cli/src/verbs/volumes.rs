@@ -4,98 +4,21 @@
 //! in turn, repeat by repeat, on one thread; the library's own build on all
 //! threads is timed beside them.
 
+mod methods;
+
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use umbrage_core::Light;
-use umbrage_core::volume::{
-    Chain, Crow, Quad, VolumeBuilder, Volumes, brute, counter, facing, plain_counter,
-};
-use umbrage_core::world::{Subset, World, query};
+use umbrage_core::volume::{Chain, Quad, VolumeBuilder, Volumes, facing};
+use umbrage_core::world::{Layer, Subset, World, query};
 
+use self::methods::Method;
 use crate::args::VolumesArgs;
 use crate::error::CliError;
-use crate::report::{VolumesMethod, VolumesReport};
+use crate::report::{VolumesLight, VolumesMethod, VolumesReport};
 use crate::setting::Setting;
 use crate::table::Table;
-
-/// What turns a chain into quads.
-trait Method {
-    fn name(&self) -> &'static str;
-    fn quads(&mut self, world: &World, chain: &[Chain], quads: &mut Vec<Quad>);
-    /// What edges and faces know of each other, in bytes, for the whole world.
-    fn adjacency_bytes(&self, world: &World) -> usize;
-}
-
-#[derive(Default)]
-struct CounterMethod {
-    counters: Vec<i32>,
-    touched: Vec<Quad>,
-}
-
-impl Method for CounterMethod {
-    fn name(&self) -> &'static str {
-        "counter"
-    }
-
-    fn quads(&mut self, world: &World, chain: &[Chain], quads: &mut Vec<Quad>) {
-        self.counters.resize(world.edges.vertices.len(), 0);
-        counter(world, chain, &mut self.counters, &mut self.touched, quads);
-    }
-
-    fn adjacency_bytes(&self, world: &World) -> usize {
-        size_of_val(&world.edges.sides[..]) + size_of_val(&world.clusters[..])
-    }
-}
-
-#[derive(Default)]
-struct PlainMethod {
-    counters: Vec<i32>,
-}
-
-impl Method for PlainMethod {
-    fn name(&self) -> &'static str {
-        "counter-plain"
-    }
-
-    fn quads(&mut self, world: &World, chain: &[Chain], quads: &mut Vec<Quad>) {
-        self.counters.resize(world.edges.vertices.len(), 0);
-        plain_counter(world, chain, &mut self.counters, quads);
-    }
-
-    fn adjacency_bytes(&self, world: &World) -> usize {
-        size_of_val(&world.edges.sides[..])
-    }
-}
-
-struct BruteMethod;
-
-impl Method for BruteMethod {
-    fn name(&self) -> &'static str {
-        "brute"
-    }
-
-    fn quads(&mut self, world: &World, chain: &[Chain], quads: &mut Vec<Quad>) {
-        brute(&world.edges, chain.iter().flat_map(Chain::triangles), quads);
-    }
-
-    fn adjacency_bytes(&self, _: &World) -> usize {
-        0
-    }
-}
-
-impl Method for Crow {
-    fn name(&self) -> &'static str {
-        "crow"
-    }
-
-    fn quads(&mut self, world: &World, chain: &[Chain], quads: &mut Vec<Quad>) {
-        self.silhouette(world, chain, quads);
-    }
-
-    fn adjacency_bytes(&self, _: &World) -> usize {
-        self.bytes()
-    }
-}
 
 /// Scratch that all methods share.
 #[derive(Default)]
@@ -105,13 +28,22 @@ struct Shared {
     quads: Vec<Quad>,
 }
 
-/// Sums over all lights of one method, one repeat.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    ms: f64,
+/// What one method made of one light.
+#[derive(Clone, Default)]
+struct Made {
     subset: u64,
     facing: u64,
     quads: u64,
+    /// One time a repeat, in microseconds.
+    us: Vec<f64>,
+}
+
+/// One method over all lights.
+struct Run {
+    method: Box<dyn Method>,
+    lights: Vec<Made>,
+    /// One time a repeat.
+    ms: Vec<f64>,
 }
 
 /// Loads, times every method, reports.
@@ -119,73 +51,115 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
     let setting = Setting::new(&args.scene, &args.common)?;
     let world = &setting.stage.world;
     let lights: Vec<Light> = setting.lights.iter().map(|light| light.light).collect();
-    let mut methods: [Box<dyn Method>; 4] = [
-        Box::new(CounterMethod::default()),
-        Box::new(PlainMethod::default()),
-        Box::new(Crow::new(world)),
-        Box::new(BruteMethod),
-    ];
+    let mut runs: Vec<Run> = methods::all(world)
+        .into_iter()
+        .map(|method| Run {
+            method,
+            lights: vec![Made::default(); lights.len()],
+            ms: Vec::new(),
+        })
+        .collect();
     let repeat = args.common.run.repeat.get();
     let mut shared = Shared::default();
-    let mut times = vec![Vec::new(); methods.len()];
-    let mut sums = vec![Sums::default(); methods.len()];
     for round in 0..=repeat {
-        for (method, (sums, times)) in methods.iter_mut().zip(sums.iter_mut().zip(&mut times)) {
-            *sums = all_lights(method.as_mut(), world, &lights, &mut shared);
-            if round > 0 {
-                times.push(sums.ms);
-            }
+        for run in &mut runs {
+            run.all_lights(world, &lights, &mut shared, round > 0);
         }
     }
-    let mut rows = Vec::new();
     let triangles = world.triangles.len().max(1) as f64;
-    for ((method, sums), times) in methods.iter().zip(&sums).zip(&mut times) {
-        let ms_total = median(times);
-        rows.push(VolumesMethod {
-            name: method.name().to_owned(),
+    let methods = runs.iter_mut().map(|run| {
+        let sum = |part: fn(&Made) -> u64| run.lights.iter().map(part).sum::<u64>();
+        let (subset, casting, quads) = (sum(|m| m.subset), sum(|m| m.facing), sum(|m| m.quads));
+        let ms_total = median(&mut run.ms);
+        VolumesMethod {
+            name: run.method.name().to_owned(),
             ms_total,
-            ns_per_triangle: ms_total * 1e6 / sums.subset.max(1) as f64,
-            quads: sums.quads,
-            cap_triangles: 2 * sums.facing,
-            polygons: sums.quads + 2 * sums.facing,
-            adjacency_bytes_per_triangle: method.adjacency_bytes(world) as f64 / triangles,
-        });
-    }
+            ns_per_triangle: ms_total * 1e6 / subset.max(1) as f64,
+            quads,
+            quads_per_light: mean(&run.lights, |_| true),
+            quads_per_local_light: mean(&run.lights, |i| !lights[i].is_directional()),
+            cap_triangles: 2 * casting,
+            polygons: quads + 2 * casting,
+            adjacency_bytes_per_triangle: run.method.adjacency_bytes(world) as f64 / triangles,
+        }
+    });
+    let methods: Vec<VolumesMethod> = methods.collect();
+    let detail = setting.lights.iter().enumerate().map(|(i, light)| {
+        let made = &runs[0].lights[i];
+        let by_method = |of: fn(&Made) -> u64| -> BTreeMap<String, u64> {
+            let of_run = |run: &Run| (run.method.name().to_owned(), of(&run.lights[i]));
+            runs.iter().map(of_run).collect()
+        };
+        VolumesLight {
+            name: light.name.clone(),
+            kind: light.kind().to_owned(),
+            subset_triangles: made.subset,
+            facing_triangles: by_method(|m| m.facing),
+            quads: by_method(|m| m.quads),
+            build_us: runs
+                .iter()
+                .map(|run| {
+                    let mut us = run.lights[i].us.clone();
+                    (run.method.name().to_owned(), median(&mut us))
+                })
+                .collect(),
+        }
+    });
+    let lights_detail: Vec<VolumesLight> = detail.collect();
     let report = VolumesReport {
         scene: setting.stage.scene.name.clone(),
         lights: lights.len() as u64,
         threads: rayon::current_num_threads() as u64,
-        subset_triangles: sums[0].subset,
-        parallel_ms_total: parallel(world, &lights, repeat),
-        methods: rows,
+        subset_triangles: runs[0].lights.iter().map(|made| made.subset).sum(),
+        parallel_ms_total: library(world, &lights, repeat),
+        serial_ms_total: one_thread(|| library(world, &lights, repeat)),
+        methods,
+        lights_detail,
     };
     args.common.results.show(&table(&report), &report)
 }
 
-fn all_lights(
-    method: &mut dyn Method,
-    world: &World,
-    lights: &[Light],
-    shared: &mut Shared,
-) -> Sums {
-    let mut sums = Sums::default();
-    let start = Instant::now();
-    for light in lights {
-        query(world, light, &mut shared.subset);
-        shared.chain.clear();
-        facing(world, light, &shared.subset, &mut shared.chain);
-        shared.quads.clear();
-        method.quads(world, &shared.chain, &mut shared.quads);
-        sums.subset += shared.subset.len() as u64;
-        sums.facing += shared.chain.iter().map(|c| c.len() as u64).sum::<u64>();
-        sums.quads += shared.quads.len() as u64;
+impl Run {
+    fn all_lights(&mut self, world: &World, lights: &[Light], shared: &mut Shared, timed: bool) {
+        let start = Instant::now();
+        for (light, made) in lights.iter().zip(&mut self.lights) {
+            let start = Instant::now();
+            query(world, Layer::Fixed, light, &mut shared.subset);
+            shared.chain.clear();
+            facing(world, light, &shared.subset, &mut shared.chain);
+            shared.quads.clear();
+            self.method
+                .quads(world, light, &mut shared.chain, &mut shared.quads);
+            if timed {
+                made.us.push(start.elapsed().as_secs_f64() * 1e6);
+            }
+            made.subset = shared.subset.len() as u64;
+            made.facing = shared.chain.iter().map(|c| c.len() as u64).sum();
+            made.quads = shared.quads.len() as u64;
+        }
+        if timed {
+            self.ms.push(start.elapsed().as_secs_f64() * 1e3);
+        }
     }
-    sums.ms = start.elapsed().as_secs_f64() * 1e3;
-    sums
 }
 
-/// Median milliseconds of the library's own build of all lights, on all threads.
-fn parallel(world: &World, lights: &[Light], repeat: usize) -> f64 {
+/// Mean quads of the lights whose number is `wanted`; 0 if there are none.
+fn mean(lights: &[Made], wanted: impl Fn(usize) -> bool) -> f64 {
+    let wanted = (0..lights.len()).filter(|i| wanted(*i));
+    let (count, sum) = wanted.fold((0u64, 0), |(n, sum), i| (n + 1, sum + lights[i].quads));
+    sum as f64 / count.max(1) as f64
+}
+
+/// Runs `work` on one thread; the time it would give on all if none can be had.
+fn one_thread(work: impl Fn() -> f64 + Sync) -> f64 {
+    match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+        Ok(pool) => pool.install(&work),
+        Err(_) => work(),
+    }
+}
+
+/// Median milliseconds of the library's own build of all lights, on the threads at hand.
+fn library(world: &World, lights: &[Light], repeat: usize) -> f64 {
     let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
     let mut times: Vec<f64> = (0..=repeat)
         .map(|_| {
@@ -219,15 +193,27 @@ fn table(report: &VolumesReport) -> Table {
             ])
             .row(["  a subset triangle".to_owned(), format!("{ns:.2} ns")])
             .count("  quads", method.quads)
+            .row([
+                "  quads a light, a local light".to_owned(),
+                format!(
+                    "{:.1}, {:.1}",
+                    method.quads_per_light, method.quads_per_local_light
+                ),
+            ])
             .count("  polygons with caps", method.polygons)
             .row([
                 "  adjacency a triangle".to_owned(),
                 format!("{:.1} bytes", method.adjacency_bytes_per_triangle),
             ]);
     }
-    table.row([
-        format!("counter, {} threads", report.threads),
-        format!("{:.2} ms", report.parallel_ms_total),
-    ]);
+    for (threads, ms) in [
+        (1, report.serial_ms_total),
+        (report.threads, report.parallel_ms_total),
+    ] {
+        table.row([
+            format!("library's build, {threads} threads"),
+            format!("{ms:.2} ms"),
+        ]);
+    }
     table
 }

@@ -13,7 +13,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::light::Light;
 use crate::volume::{Chain, Quad};
-use crate::world::{LANES, World};
+use crate::world::{LANES, Layer, World};
 
 /// Where the count of an eye ray starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,12 +40,13 @@ pub fn eye_count(
     quads: &[Quad],
     eye: glam::Vec3,
 ) -> EyeCount {
-    let Some(root) = world.bvh.nodes.first() else {
-        return EyeCount::Exact(0);
-    };
-    let segment = Segment::new(light, eye, root.min.as_dvec3(), root.max.as_dvec3());
+    let segment = Segment::new(world, light, eye);
     let mut count = 0;
-    let mut stack = vec![0usize];
+    let mut stack: Vec<usize> = [Layer::Fixed, Layer::Objects]
+        .into_iter()
+        .flat_map(|layer| world.roots(layer))
+        .map(|root| root as usize)
+        .collect();
     while let Some(index) = stack.pop() {
         let node = &world.bvh.nodes[index];
         if !segment.meets_box(node.min.as_dvec3(), node.max.as_dvec3()) {
@@ -101,34 +102,40 @@ struct Segment {
     eye: DVec3,
     light: DVec3,
     directional: bool,
-    /// Boxes grow by this much: the widest possible tolerance of a side.
-    pad: f64,
 }
 
 impl Segment {
-    fn new(light: &Light, eye: glam::Vec3, min: DVec3, max: DVec3) -> Self {
+    fn new(world: &World, light: &Light, eye: glam::Vec3) -> Self {
         let eye = eye.as_dvec3();
         let [x, y, z, w] = light.homogeneous().map(f64::from);
         let toward = DVec3::new(x, y, z);
-        let extent = (max - min).length() + (eye - min).abs().max((eye - max).abs()).length();
+        // Beyond every box, seen from the eye.
+        let beyond = || {
+            let roots = [Layer::Fixed, Layer::Objects]
+                .into_iter()
+                .flat_map(|layer| world.roots(layer));
+            roots
+                .map(|root| &world.bvh.nodes[root as usize])
+                .map(|root| farthest(eye, root.min.as_dvec3(), root.max.as_dvec3()))
+                .fold(1.0, f64::max)
+        };
         Self {
             eye,
-            light: if w == 0.0 {
-                eye + toward * extent
-            } else {
-                toward
+            light: match w {
+                0.0 => eye + toward * (2.0 * beyond()),
+                _ => toward,
             },
             directional: w == 0.0,
-            pad: 2.0 * SIDE_TOLERANCE * extent,
         }
     }
 
-    /// Slab test against a padded box.
+    /// Slab test against a box padded by the widest tolerance of a side whose edge is in it.
     fn meets_box(&self, min: DVec3, max: DVec3) -> bool {
+        let pad = 2.0 * SIDE_TOLERANCE * farthest(self.eye, min, max);
         let d = self.eye - self.light;
         let (mut near, mut far) = (0.0f64, 1.0f64);
         for axis in 0..3 {
-            let (lo, hi) = (min[axis] - self.pad, max[axis] + self.pad);
+            let (lo, hi) = (min[axis] - pad, max[axis] + pad);
             if d[axis] == 0.0 {
                 if self.light[axis] < lo || self.light[axis] > hi {
                     return false;
@@ -204,6 +211,11 @@ impl Segment {
             && inside(self.light, self.eye, b, c)
             && inside(self.light, self.eye, c, a)
     }
+}
+
+/// Distance from `p` to the corner of the box that is farthest from it.
+fn farthest(p: DVec3, min: DVec3, max: DVec3) -> f64 {
+    (p - min).abs().max((p - max).abs()).length()
 }
 
 fn coord(p: DVec3) -> Coord3D<f64> {

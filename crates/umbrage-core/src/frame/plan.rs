@@ -6,9 +6,12 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
+
 use super::bounds::{Rect, light_rect};
 use super::eye_count::{EyeCount, eye_count};
 use super::view::View;
+use crate::cull::{Cull, Culls};
 use crate::light::Light;
 use crate::volume::{Chain, ChainTriangle, Volumes};
 use crate::world::World;
@@ -19,12 +22,15 @@ use crate::world::World;
 pub struct PlanOptions {
     /// Which stencil path lights take.
     pub path: PathRule,
+    /// Which steps skip work.
+    pub culls: Culls,
 }
 
 impl Default for PlanOptions {
     fn default() -> Self {
         Self {
             path: PathRule::ZPassWhereExact,
+            culls: Culls::EVERY,
         }
     }
 }
@@ -69,6 +75,8 @@ pub enum SkipReason {
     OutsideView,
     /// No triangle is within its range.
     NothingInRange,
+    /// No visible surface is within its range: found out on the GPU, from the depth buffer.
+    NoVisibleReceiver,
 }
 
 impl LightPath {
@@ -89,6 +97,9 @@ impl LightPath {
             LightPath::ZFail(ZFailReason::Asked) => "asked for",
             LightPath::Skipped(SkipReason::OutsideView) => "its range is outside the view",
             LightPath::Skipped(SkipReason::NothingInRange) => "no triangle is in its range",
+            LightPath::Skipped(SkipReason::NoVisibleReceiver) => {
+                "no visible surface is in its range"
+            }
         }
     }
 }
@@ -118,10 +129,38 @@ pub struct FramePlan {
     pub lights: Vec<LightPlan>,
     /// The chains of the lights that need caps.
     pub caps: Vec<ChainTriangle>,
+    counts: EyeCounts,
+}
+
+/// Eye counts of the last plan, by the stamp of each light's volume.
+#[derive(Clone, Debug, Default)]
+struct EyeCounts {
+    eye: Option<Vec3>,
+    lights: Vec<(u64, EyeCount)>,
+}
+
+impl EyeCounts {
+    /// Forgets what is not of this eye.
+    fn look_from(&mut self, eye: Vec3, lights: usize) {
+        if self.eye != Some(eye) {
+            self.lights.clear();
+            self.eye = Some(eye);
+        }
+        self.lights.resize(lights, (0, EyeCount::Ambiguous));
+    }
+
+    fn of(&mut self, light: usize, stamp: u64, count: impl FnOnce() -> EyeCount) -> EyeCount {
+        let known = &mut self.lights[light];
+        if known.0 != stamp || stamp == 0 {
+            *known = (stamp, count());
+        }
+        known.1
+    }
 }
 
 impl FramePlan {
-    /// Plans `view`, replacing what was there. `volumes` must be those of `lights`.
+    /// Plans `view`, replacing what was there. `volumes` must be those of `lights`. Eye counts are
+    /// kept from the last plan where neither eye nor volume changed.
     pub fn make(
         &mut self,
         world: &World,
@@ -132,22 +171,19 @@ impl FramePlan {
     ) {
         self.lights.clear();
         self.caps.clear();
+        self.counts.look_from(view.eye, lights.len());
         for (number, (light, volume)) in lights.iter().zip(&volumes.lights).enumerate() {
             let scissor = light_rect(view, light);
-            let path = if scissor.is_empty() {
+            let path = if scissor.is_empty() && options.culls.has(Cull::View) {
                 LightPath::Skipped(SkipReason::OutsideView)
             } else if volume.subset_triangles == 0 {
                 LightPath::Skipped(SkipReason::NothingInRange)
             } else if options.path == PathRule::ZFailAlways {
                 LightPath::ZFail(ZFailReason::Asked)
             } else {
-                match eye_count(
-                    world,
-                    light,
-                    volumes.chain_of(number),
-                    volumes.quads_of(number),
-                    view.eye,
-                ) {
+                let (chain, quads) = (volumes.chain_of(number), volumes.quads_of(number));
+                let count = || eye_count(world, light, chain, quads, view.eye);
+                match self.counts.of(number, volume.stamp, count) {
                     EyeCount::Exact(eye_count) => LightPath::ZPass { eye_count },
                     EyeCount::Ambiguous => LightPath::ZFail(ZFailReason::EyeOnSide),
                 }
@@ -163,6 +199,12 @@ impl FramePlan {
                     .extend(triangles.filter(|t| t.coefficient() == coefficient));
                 first..self.caps.len() as u32
             });
+            let mut quads = volume.quads.clone();
+            // Behind a surface, where z-fail counts, the ray leaves the range.
+            if matches!(path, LightPath::ZPass { .. }) && options.culls.has(Cull::Range) {
+                let all = quads.len() as u32;
+                quads.end = quads.start + volume.in_range.for_eye(light, view.eye, all);
+            }
             self.lights.push(LightPlan {
                 stencil_reference: match path {
                     // Lit where eye count + sides crossed is 0; stencil arithmetic is modulo 256.
@@ -171,7 +213,7 @@ impl FramePlan {
                 },
                 path,
                 scissor,
-                quads: volume.quads.clone(),
+                quads,
                 caps,
                 reversed_caps,
             });

@@ -34,7 +34,7 @@ impl ChainTriangle {
 }
 
 /// The triangles of one cluster that are in a chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Chain {
     /// Number of the cluster.
     pub cluster: u32,

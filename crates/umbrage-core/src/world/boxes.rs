@@ -16,21 +16,24 @@ pub struct BoxCluster {
     pub max: [[f32; LANES]; 3],
 }
 
-/// Boxes of all triangles; missing lanes of the last cluster are empty boxes far away.
+/// Boxes of all triangles.
 pub(super) fn boxes(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<BoxCluster> {
-    let cluster = |triangles: &[[u32; 3]]| {
-        let mut boxes = BoxCluster {
-            min: [[f32::INFINITY; LANES]; 3],
-            max: [[f32::INFINITY; LANES]; 3],
-        };
-        for (lane, t) in triangles.iter().enumerate() {
-            let [a, b, c] = t.map(|v| positions[v as usize]);
-            for axis in 0..3 {
-                boxes.min[axis][lane] = a[axis].min(b[axis]).min(c[axis]);
-                boxes.max[axis][lane] = a[axis].max(b[axis]).max(c[axis]);
-            }
-        }
-        boxes
-    };
+    let cluster = |triangles: &[[u32; 3]]| box_cluster(positions, triangles);
     triangles.par_chunks(LANES).map(cluster).collect()
+}
+
+/// Boxes of at most 64 triangles; missing lanes are empty boxes far away.
+pub(super) fn box_cluster(positions: &[Vec3], triangles: &[[u32; 3]]) -> BoxCluster {
+    let mut boxes = BoxCluster {
+        min: [[f32::INFINITY; LANES]; 3],
+        max: [[f32::INFINITY; LANES]; 3],
+    };
+    for (lane, t) in triangles.iter().enumerate() {
+        let [a, b, c] = t.map(|v| positions[v as usize]);
+        for axis in 0..3 {
+            boxes.min[axis][lane] = a[axis].min(b[axis]).min(c[axis]);
+            boxes.max[axis][lane] = a[axis].max(b[axis]).max(c[axis]);
+        }
+    }
+    boxes
 }

@@ -31,6 +31,12 @@ impl EdgeUse {
         self.0 >> 1
     }
 
+    /// The same use of an edge whose number is higher by `by`.
+    #[inline]
+    pub(super) fn renumbered(self, by: u32) -> Self {
+        Self(self.0 + (by << 1))
+    }
+
     /// +1 if the triangle runs along the edge, -1 if against it.
     #[inline]
     pub fn sign(self) -> i32 {

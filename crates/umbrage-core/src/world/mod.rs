@@ -11,6 +11,7 @@ mod clusters;
 mod edges;
 mod half_edges;
 mod memory;
+mod objects;
 mod planes;
 mod query;
 mod save;
@@ -30,8 +31,9 @@ pub use bvh::{Bvh, Node};
 pub use clusters::{Cluster, ClusterSide, LANES};
 pub use edges::{EdgeUse, Edges};
 pub use memory::WorldMemory;
+pub use objects::{Extent, Object, ObjectError, ObjectId, Pose};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
-pub use query::{Reach, query};
+pub use query::{Layer, Reach, query};
 pub use save::SavedWorldError;
 pub use subset::{Members, Subset};
 
@@ -41,6 +43,7 @@ pub use validate::WorldFault;
 
 use self::stages::Tree;
 use crate::mesh::{Casting, Mesh};
+use crate::stamp;
 
 /// Why a mesh cannot become a world.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -125,8 +128,9 @@ pub struct BuildTimes {
     pub total: f64,
 }
 
-/// A world that lights can query. Immutable once built.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A world that lights can query: fixed triangles, and objects that can be added, moved and
+/// removed. All arrays hold the fixed part first, then the objects.
+#[derive(Clone, Debug, Default)]
 pub struct World {
     /// Distinct positions, numbered by first use.
     pub positions: Array<Vec3>,
@@ -144,10 +148,40 @@ pub struct World {
     pub planes: Planes,
     /// Boxes of the triangles.
     pub boxes: Array<BoxCluster>,
-    /// Boxes over ranges of triangles.
+    /// Boxes over ranges of triangles: a tree over the fixed ones, and a tree an object.
     pub bvh: Bvh,
+    /// The share of the fixed triangles.
+    pub fixed: Extent,
+    /// Slots for objects, free ones among them.
+    pub objects: Vec<Object>,
+    /// When the fixed part was built.
+    pub fixed_stamp: u64,
+    /// When the world last changed: two worlds with the same stamp are equal.
+    pub stamp: u64,
     /// What was found.
     pub report: WorldReport,
+}
+
+/// Of what is in them; when that changed does not count.
+impl PartialEq for World {
+    fn eq(&self, other: &Self) -> bool {
+        let places = |world: &Self| -> Vec<(Extent, [Vec3; 2])> {
+            let objects = world.objects.iter();
+            objects.map(|o| (o.extent.clone(), o.bounds)).collect()
+        };
+        self.positions == other.positions
+            && self.triangles == other.triangles
+            && self.source == other.source
+            && self.casting == other.casting
+            && self.edges == other.edges
+            && self.clusters == other.clusters
+            && self.planes == other.planes
+            && self.boxes == other.boxes
+            && self.bvh == other.bvh
+            && self.fixed == other.fixed
+            && places(self) == places(other)
+            && self.report == other.report
+    }
 }
 
 impl World {
@@ -194,7 +228,9 @@ impl World {
             boxes: ordered.boxes.into(),
             bvh,
             report,
-        };
+            ..Self::default()
+        }
+        .without_objects();
         world.report.bytes_per_triangle =
             world.bytes() as f64 / world.triangles.len().max(1) as f64;
         world.report.build_ms.total = start.elapsed().as_secs_f64() * 1e3;
@@ -203,6 +239,29 @@ impl World {
             panic!("World::build broke an invariant: {fault}");
         }
         Ok(world)
+    }
+
+    /// A new world, all of whose triangles are fixed.
+    fn without_objects(mut self) -> Self {
+        self.fixed = Extent {
+            vertices: 0..self.positions.len() as u32,
+            triangles: 0..self.triangles.len() as u32,
+            edges: 0..self.edges.vertices.len() as u32,
+            nodes: 0..self.bvh.nodes.len() as u32,
+        };
+        self.stamp = stamp::next();
+        self.fixed_stamp = self.stamp;
+        self
+    }
+
+    /// The roots of the trees over one layer's triangles, in the order of the triangles.
+    pub fn roots(&self, layer: Layer) -> impl Iterator<Item = u32> {
+        let (fixed, objects) = match layer {
+            Layer::Fixed => (Some(&self.fixed), &[][..]),
+            Layer::Objects => (None, &self.objects[..]),
+        };
+        let extents = fixed.into_iter().chain(objects.iter().map(|o| &o.extent));
+        extents.filter_map(|extent| extent.nodes.clone().next())
     }
 
     /// The three corners of triangle `t`.

@@ -48,25 +48,9 @@ pub struct Planes {
 pub(crate) const FILTER: f32 = 1.0 / (1 << 21) as f32;
 
 impl Planes {
-    /// Planes of counter-clockwise triangles. Triangles without a trustworthy f64 normal (area
-    /// lost to cancellation) get a zero plane.
+    /// Planes of counter-clockwise triangles.
     pub fn new(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let cluster = |triangles: &[[u32; 3]]| {
-            let mut planes = PlaneCluster {
-                nx: [0.0; LANES],
-                ny: [0.0; LANES],
-                nz: [0.0; LANES],
-                d: [0.0; LANES],
-            };
-            for (lane, t) in triangles.iter().enumerate() {
-                let (n, d) = plane(t.map(|v| positions[v as usize].as_dvec3()));
-                planes.nx[lane] = n.x as f32;
-                planes.ny[lane] = n.y as f32;
-                planes.nz[lane] = n.z as f32;
-                planes.d[lane] = d as f32;
-            }
-            planes
-        };
+        let cluster = |triangles: &[[u32; 3]]| plane_cluster(positions, triangles);
         let planes: Vec<PlaneCluster> = triangles.par_chunks(LANES).map(cluster).collect();
         Self {
             clusters: planes.into(),
@@ -86,6 +70,25 @@ impl Planes {
         }
         exact_side(corners(), light.homogeneous)
     }
+}
+
+/// Planes of at most 64 triangles. Triangles without a trustworthy f64 normal (area lost to
+/// cancellation) and missing lanes get a zero plane.
+pub(super) fn plane_cluster(positions: &[Vec3], triangles: &[[u32; 3]]) -> PlaneCluster {
+    let mut planes = PlaneCluster {
+        nx: [0.0; LANES],
+        ny: [0.0; LANES],
+        nz: [0.0; LANES],
+        d: [0.0; LANES],
+    };
+    for (lane, t) in triangles.iter().enumerate() {
+        let (n, d) = plane(t.map(|v| positions[v as usize].as_dvec3()));
+        planes.nx[lane] = n.x as f32;
+        planes.ny[lane] = n.y as f32;
+        planes.nz[lane] = n.z as f32;
+        planes.d[lane] = d as f32;
+    }
+    planes
 }
 
 /// A light prepared for many side tests.

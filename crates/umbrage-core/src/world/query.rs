@@ -73,6 +73,14 @@ impl Reach {
         x * x + y * y + z * z <= self.range2 && self.cone_meets(min, max)
     }
 
+    /// Whether the light may reach the box. An empty box (lower above upper corner) it cannot.
+    pub fn touches_box(&self, [min, max]: [Vec3; 2]) -> bool {
+        let near = (min - self.center).max(self.center - max).max(Vec3::ZERO);
+        min.cmple(max).all()
+            && near.length_squared() <= self.range2 * SLACK
+            && self.cone_meets(min, max)
+    }
+
     #[inline]
     fn cone_meets(&self, min: Vec3, max: Vec3) -> bool {
         self.cone.is_none_or(|cone| {
@@ -124,21 +132,36 @@ impl Cone {
     }
 }
 
-/// Replaces `subset` with the triangles that `light` touches.
-pub fn query(world: &World, light: &Light, subset: &mut Subset) {
+/// A part of a world that changes at its own pace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// The triangles the world was built from.
+    Fixed,
+    /// Those of its objects.
+    Objects,
+}
+
+/// Replaces `subset` with the triangles of `layer` that `light` touches.
+pub fn query(world: &World, layer: Layer, light: &Light, subset: &mut Subset) {
     subset.clear();
     let reach = Reach::new(light);
-    with_lanes!(query_with(world, &reach, subset));
+    for root in world.roots(layer) {
+        query_tree(world, root, &reach, subset);
+    }
+}
+
+fn query_tree(world: &World, root: u32, reach: &Reach, subset: &mut Subset) {
+    with_lanes!(query_with(world, root, reach, subset));
 }
 
 /// Nodes of at most this many triangles are not descended into: their clusters are tested whole.
 const FEW: u32 = 2 * LANES as u32;
 
 #[inline(always)]
-fn query_with<L: Lanes64>(l: L, world: &World, reach: &Reach, subset: &mut Subset) {
+fn query_with<L: Lanes64>(l: L, world: &World, root: u32, reach: &Reach, subset: &mut Subset) {
     let nodes = &world.bvh.nodes;
-    let mut stack = [0u32; 128];
-    let mut top = usize::from(!nodes.is_empty());
+    let mut stack = [root; 128];
+    let mut top = 1;
     while top > 0 {
         top -= 1;
         let index = stack[top];

@@ -10,6 +10,7 @@ mod layout;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use bytemuck::{CheckedBitPattern, NoUninit};
@@ -20,27 +21,42 @@ use self::layout::{
     ALIGNMENT, BYTE_ORDER, Contents, Head, MAGIC, Placed, Preamble, Section, VERSION,
 };
 use super::array::{Array, MappedFile};
-use super::{Bvh, Edges, Planes, World};
+use super::{Bvh, Edges, Extent, LANES, Planes, World};
 use crate::fingerprint::{Fingerprint, checksum};
 
 impl World {
-    /// Writes the world to `path`, whole or not at all; [`World::open`] asks for the same
+    /// What of an array is not an object's.
+    fn fixed_part<'a, T>(&self, array: &'a [T], fixed: &Range<u32>) -> &'a [T] {
+        match self.objects.is_empty() {
+            true => array,
+            false => &array[..fixed.end as usize],
+        }
+    }
+
+    /// Writes the world without its objects to `path`, whole or not at all; [`World::open`] asks for the same
     /// `fingerprint`, which is that of the mesh it was built from.
     ///
     /// # Errors
     /// [`SavedWorldError::Io`].
     pub fn save(&self, path: &Path, fingerprint: Fingerprint) -> Result<(), SavedWorldError> {
+        let Extent {
+            vertices,
+            triangles,
+            edges,
+            nodes,
+        } = &self.fixed;
+        let clusters = 0..triangles.end.div_ceil(LANES as u32);
         let arrays: [(&[u8], usize); Section::ALL.len()] = [
-            bytes(&self.positions),
-            bytes(&self.triangles),
-            bytes(&self.source),
-            bytes(&self.casting),
-            bytes(&self.edges.vertices),
-            bytes(&self.edges.sides),
-            bytes(&self.clusters),
-            bytes(&self.planes.clusters),
-            bytes(&self.boxes),
-            bytes(&self.bvh.nodes),
+            bytes(self.fixed_part(&self.positions, vertices)),
+            bytes(self.fixed_part(&self.triangles, triangles)),
+            bytes(self.fixed_part(&self.source, triangles)),
+            bytes(self.fixed_part(&self.casting, triangles)),
+            bytes(self.fixed_part(&self.edges.vertices, edges)),
+            bytes(self.fixed_part(&self.edges.sides, &clusters)),
+            bytes(self.fixed_part(&self.clusters, &clusters)),
+            bytes(self.fixed_part(&self.planes.clusters, &clusters)),
+            bytes(self.fixed_part(&self.boxes, &clusters)),
+            bytes(self.fixed_part(&self.bvh.nodes, nodes)),
         ];
         let mut end = size_of::<Head>();
         let sections = arrays.map(|(bytes, element)| {
@@ -110,9 +126,10 @@ impl World {
                 nodes: array(&file, &contents, Section::Nodes)?,
             },
             report: (&contents.report).into(),
+            ..Self::default()
         };
         bounds::check(&world, fingerprint.triangles())?;
-        Ok(world)
+        Ok(world.without_objects())
     }
 }
 

@@ -51,10 +51,9 @@ fn vertex(@builtin(vertex_index) corner: u32) -> Varying {
     out.clip = umbrage_clip(view, p - view.eye, 1.0);
     out.distance = out.clip.w;
     out.material = triangle_material[triangle];
-    if arrayLength(&normals) > 1u {
+    out.normal = face;
+    if arrayLength(&normals) > 1u && normals[corner] != 0u {
         out.normal = unpack4x8snorm(normals[corner]).xyz;
-    } else {
-        out.normal = face;
     }
     if arrayLength(&uvs) > 1u {
         out.uv = uvs[corner];

@@ -24,8 +24,7 @@ struct Varying {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
-    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
-    return Varying(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), light);
+    return Varying(umbrage_light_corner(index, light), light);
 }
 
 // From the eye to the surface at a pixel.
@@ -84,22 +83,31 @@ fn shade(in: Varying) -> @location(0) vec4f {
     return vec4f(min(light.power * strength * reflected, vec3f(6e4)), 1.0);
 }
 
-// One bit a light, 32 lights a texture: channel by byte, additive.
+// Whether the light reaches the surface at a pixel, with `slack` on its range.
+fn is_reached(light: Light, pixel: vec2f, slack: f32) -> bool {
+    let distance = textureLoad(distance_texture, vec2i(pixel), 0).x;
+    let v = (light.position - view.eye) - surface_offset(pixel, distance);
+    let range = light.range * slack;
+    return distance > 0.0 && (light.kind == 2u || dot(v, v) < range * range);
+}
+
+// One bit a light, 32 lights a texture: channel by byte, additive. Beyond a light's range its
+// volume says nothing; a little slack keeps the range's own rounding out of the mask.
 @fragment
 fn mark(in: Varying) -> @location(0) vec4f {
     let bit = in.light & 7u;
     let byte = (in.light >> 3u) & 3u;
-    let value = f32(1u << bit) / 255.0;
+    var value = f32(1u << bit) / 255.0;
+    if !is_reached(lights[in.light], in.position.xy, 1.000244140625) {
+        value = 0.0;
+    }
     return select(vec4f(0.0), vec4f(value), vec4u(0u, 1u, 2u, 3u) == vec4u(byte));
 }
 
 // Lights that reach a pixel, counted.
 @fragment
 fn reach(in: Varying) -> @location(0) vec4f {
-    let light = lights[in.light];
-    let distance = textureLoad(distance_texture, vec2i(in.position.xy), 0).x;
-    let v = (light.position - view.eye) - surface_offset(in.position.xy, distance);
-    let reaches = distance > 0.0 && (light.kind == 2u || dot(v, v) < light.range * light.range);
+    let reaches = is_reached(lights[in.light], in.position.xy, 1.0);
     return vec4f(select(0.0, 1.0, reaches), 0.0, 0.0, 0.0);
 }
 

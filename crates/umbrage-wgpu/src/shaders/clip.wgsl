@@ -10,6 +10,7 @@ struct View {
     near: f32,
     forward: vec3f,
     width: f32,
+    height: f32,
 }
 
 // Clip position of a world point (w = 1) at q = point - eye, or of the point at infinity (w = 0)

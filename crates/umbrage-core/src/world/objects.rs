@@ -1,0 +1,344 @@
+//! Objects: parts of a world that can be added, moved and removed.
+//!
+//! Takes meshes and rigid poses; gives the same arrays that the fixed triangles have, so that
+//! query, facing, counter, eye count and renderer need not know one from the other. An object's
+//! topology (edges, clusters, tree) is built once; a pose rewrites its positions, planes and boxes.
+//! Its positions are transformed in f64 and rounded once: those f32 positions *are* the geometry,
+//! for CPU, GPU and oracle alike. Edges are never shared between objects: counters add up.
+
+use std::ops::Range;
+
+use glam::{DQuat, DVec3, Vec3};
+use thiserror::Error;
+
+use super::array::Array;
+use super::{LANES, Node, World, WorldError, boxes, planes};
+use crate::mesh::{Casting, Mesh};
+use crate::stamp;
+
+/// Names an object of one world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectId {
+    slot: u32,
+    /// The stamp of its insertion: a slot that is used again gives no old name a new meaning.
+    placed: u64,
+}
+
+/// Where an object stands: rotation, then translation, in metres from the world's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Of unit length, or it is made so.
+    pub rotation: DQuat,
+    /// World space.
+    pub translation: DVec3,
+}
+
+impl Pose {
+    /// No rotation.
+    pub fn at(translation: DVec3) -> Self {
+        Self {
+            rotation: DQuat::IDENTITY,
+            translation,
+        }
+    }
+}
+
+/// Why an object cannot be inserted, moved or removed.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ObjectError {
+    /// Its mesh is not one.
+    #[error(transparent)]
+    Mesh(#[from] WorldError),
+    /// A pose with NaN, infinite or all-zero parts, or one that takes a vertex beyond f32.
+    #[error("the pose takes the object nowhere: give a finite, non-zero rotation and translation")]
+    Pose,
+    /// It was removed, or is of another world.
+    #[error("no such object in this world: it was removed, or belongs to another world")]
+    Unknown,
+}
+
+/// The share of a world's arrays that belongs together.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Extent {
+    /// In [`World::positions`].
+    pub vertices: Range<u32>,
+    /// In [`World::triangles`]; an object's begin with a cluster.
+    pub triangles: Range<u32>,
+    /// In [`World::edges`].
+    pub edges: Range<u32>,
+    /// In [`Bvh::nodes`](super::Bvh::nodes); the first is the root.
+    pub nodes: Range<u32>,
+}
+
+/// One slot for an object, in use or free.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its share of the arrays.
+    pub extent: Extent,
+    /// The slot's share, of which it may leave some unused.
+    pub room: Extent,
+    /// When it was inserted; 0 in a free slot.
+    pub placed: u64,
+    /// When it was last inserted, posed or removed.
+    pub changed: u64,
+    /// Lower and upper corner of its box; empty if there is none.
+    pub bounds: [Vec3; 2],
+    rest: Vec<Vec3>,
+}
+
+const EMPTY: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+
+/// What stands in the place of a triangle that is none: no area, and casts nothing.
+const PADDING: [u32; 3] = [0; 3];
+
+impl World {
+    /// Adds an object with positions in its own space.
+    pub fn insert(&mut self, mesh: &Mesh, pose: &Pose) -> Result<ObjectId, ObjectError> {
+        let part = World::build(mesh)?;
+        check(&part.positions, pose)?;
+        let slot = self.slot_for(&part);
+        let placed = stamp::next();
+        let object = &mut self.objects[slot];
+        object.placed = placed;
+        object.rest = part.positions.to_vec();
+        object.extent = object.room.begin(part.fixed.lengths());
+        self.write_topology(&part, slot);
+        let id = ObjectId {
+            slot: slot as u32,
+            placed,
+        };
+        self.pose(id, pose)?;
+        Ok(id)
+    }
+
+    /// Moves an object.
+    pub fn pose(&mut self, id: ObjectId, pose: &Pose) -> Result<(), ObjectError> {
+        let slot = self.slot_of(id)?;
+        let object = &self.objects[slot];
+        check(&object.rest, pose)?;
+        let rotation = pose.rotation.normalize();
+        let posed = object.rest.iter().map(|p| placed(rotation, pose, *p));
+        let first = object.extent.vertices.start as usize;
+        let positions = &mut self.positions.to_mut()[first..];
+        for (to, from) in positions.iter_mut().zip(posed) {
+            *to = from;
+        }
+        self.refit(slot);
+        self.stamp = stamp::next();
+        self.objects[slot].changed = self.stamp;
+        Ok(())
+    }
+
+    /// Takes an object out. Its share of the arrays waits for another of its size.
+    pub fn remove(&mut self, id: ObjectId) -> Result<(), ObjectError> {
+        let slot = self.slot_of(id)?;
+        let object = &mut self.objects[slot];
+        object.rest.clear();
+        object.placed = 0;
+        object.bounds = EMPTY;
+        self.stamp = stamp::next();
+        object.changed = self.stamp;
+        let triangles = as_usize(&object.room.triangles);
+        object.extent = object.room.begin([0; 4]);
+        self.triangles.to_mut()[triangles.clone()].fill(PADDING);
+        self.casting.to_mut()[triangles].fill(Casting::None);
+        Ok(())
+    }
+
+    /// The object's present share of the arrays.
+    pub fn object(&self, id: ObjectId) -> Result<&Object, ObjectError> {
+        self.slot_of(id).map(|slot| &self.objects[slot])
+    }
+
+    /// All triangles as they stand, objects in their poses: for an oracle, or to build a world
+    /// anew.
+    pub fn to_mesh(&self) -> Mesh {
+        let real = |t: &usize| self.triangles[*t] != PADDING;
+        let kept: Vec<usize> = (0..self.triangles.len()).filter(real).collect();
+        Mesh {
+            positions: self.positions.to_vec(),
+            triangles: kept.iter().map(|&t| self.triangles[t]).collect(),
+            casting: kept.iter().map(|&t| self.casting[t]).collect(),
+        }
+    }
+
+    fn slot_of(&self, id: ObjectId) -> Result<usize, ObjectError> {
+        match self.objects.get(id.slot as usize) {
+            Some(object) if object.placed == id.placed => Ok(id.slot as usize),
+            _ => Err(ObjectError::Unknown),
+        }
+    }
+
+    /// A free slot that holds `part` without much waste, or a new one at the end of the arrays.
+    fn slot_for(&mut self, part: &World) -> usize {
+        let needed = part.fixed.lengths();
+        let fits = |object: &Object| {
+            let room = object.room.lengths();
+            object.placed == 0 && (0..4).all(|i| needed[i] <= room[i] && room[i] <= 2 * needed[i])
+        };
+        if let Some(slot) = self.objects.iter().position(fits) {
+            return slot;
+        }
+        let clusters = self.clusters.len();
+        self.triangles.to_mut().resize(clusters * LANES, PADDING);
+        self.source.to_mut().resize(clusters * LANES, u32::MAX);
+        self.casting
+            .to_mut()
+            .resize(clusters * LANES, Casting::None);
+        let after = |length: usize, more: usize| length as u32..(length + more) as u32;
+        let room = Extent {
+            vertices: after(self.positions.len(), part.positions.len()),
+            triangles: after(self.triangles.len(), part.triangles.len()),
+            edges: after(self.edges.vertices.len(), part.edges.vertices.len()),
+            nodes: after(self.bvh.nodes.len(), part.bvh.nodes.len()),
+        };
+        self.positions
+            .to_mut()
+            .resize(room.vertices.end as usize, Vec3::ZERO);
+        self.triangles
+            .to_mut()
+            .resize(room.triangles.end as usize, PADDING);
+        self.source
+            .to_mut()
+            .resize(room.triangles.end as usize, u32::MAX);
+        self.casting
+            .to_mut()
+            .resize(room.triangles.end as usize, Casting::None);
+        self.edges
+            .vertices
+            .to_mut()
+            .resize(room.edges.end as usize, [0; 2]);
+        self.edges
+            .sides
+            .to_mut()
+            .extend_from_slice(&part.edges.sides);
+        self.clusters.to_mut().extend_from_slice(&part.clusters);
+        let planes = self.planes.clusters.to_mut();
+        planes.extend_from_slice(&part.planes.clusters);
+        self.boxes.to_mut().extend_from_slice(&part.boxes);
+        self.bvh.nodes.to_mut().extend_from_slice(&part.bvh.nodes);
+        self.objects.push(Object {
+            extent: room.begin([0; 4]),
+            room,
+            placed: 0,
+            changed: 0,
+            bounds: EMPTY,
+            rest: Vec::new(),
+        });
+        self.objects.len() - 1
+    }
+
+    /// Copies what no pose changes, renumbered.
+    fn write_topology(&mut self, part: &World, slot: usize) {
+        let extent = &self.objects[slot].extent;
+        let [vertex, triangle, edge, node] = extent.starts();
+        let from = |start: u32| start as usize;
+        let corners = part.triangles.iter().map(|t| t.map(|v| v + vertex));
+        write(&mut self.triangles, from(triangle), corners);
+        write(
+            &mut self.source,
+            from(triangle),
+            part.source.iter().copied(),
+        );
+        let casting = part.casting.iter().copied();
+        write(&mut self.casting, from(triangle), casting);
+        let ends = part.edges.vertices.iter().map(|e| e.map(|v| v + vertex));
+        write(&mut self.edges.vertices, from(edge), ends);
+        let cluster = from(triangle) / LANES;
+        let sides = part.edges.sides.iter();
+        let sides = sides.map(|sides| sides.map(|side| side.map(|u| u.renumbered(edge))));
+        write(&mut self.edges.sides, cluster, sides);
+        write(&mut self.clusters, cluster, part.clusters.iter().copied());
+        let nodes = part.bvh.nodes.iter().map(|n| Node {
+            first: n.first + triangle,
+            second: if n.is_leaf() { 0 } else { n.second + node },
+            ..*n
+        });
+        write(&mut self.bvh.nodes, from(node), nodes);
+    }
+
+    /// Planes, boxes and tree from the positions of an object.
+    fn refit(&mut self, slot: usize) {
+        let extent = self.objects[slot].extent.clone();
+        let triangles = as_usize(&extent.triangles);
+        for (i, chunk) in self.triangles[triangles.clone()].chunks(LANES).enumerate() {
+            let cluster = triangles.start / LANES + i;
+            self.planes.clusters.to_mut()[cluster] = planes::plane_cluster(&self.positions, chunk);
+            self.boxes.to_mut()[cluster] = boxes::box_cluster(&self.positions, chunk);
+        }
+        for i in as_usize(&extent.nodes).rev() {
+            let node = self.bvh.nodes[i];
+            let (min, max) = if node.is_leaf() {
+                let corners = node.range().flat_map(|t| self.corners(t));
+                corners.fold((EMPTY[0], EMPTY[1]), |(min, max), p| {
+                    (min.min(p), max.max(p))
+                })
+            } else {
+                let [a, b] = [self.bvh.nodes[i + 1], self.bvh.nodes[node.second as usize]];
+                (a.min.min(b.min), a.max.max(b.max))
+            };
+            let node = &mut self.bvh.nodes.to_mut()[i];
+            (node.min, node.max) = (min, max);
+        }
+        let root = extent.nodes.clone().next();
+        let root = root.map(|root| &self.bvh.nodes[root as usize]);
+        self.objects[slot].bounds = root.map_or(EMPTY, |root| [root.min, root.max]);
+    }
+}
+
+impl Extent {
+    fn lengths(&self) -> [usize; 4] {
+        [
+            self.vertices.len(),
+            self.triangles.len(),
+            self.edges.len(),
+            self.nodes.len(),
+        ]
+    }
+
+    /// The first `lengths` of it.
+    fn begin(&self, lengths: [usize; 4]) -> Self {
+        let [v, t, e, n] = self.starts();
+        let part = |start: u32, length: usize| start..start + length as u32;
+        Self {
+            vertices: part(v, lengths[0]),
+            triangles: part(t, lengths[1]),
+            edges: part(e, lengths[2]),
+            nodes: part(n, lengths[3]),
+        }
+    }
+
+    fn starts(&self) -> [u32; 4] {
+        [
+            self.vertices.start,
+            self.triangles.start,
+            self.edges.start,
+            self.nodes.start,
+        ]
+    }
+}
+
+/// Writes items one after the other from place `first` on.
+fn write<T: Clone>(array: &mut Array<T>, first: usize, items: impl Iterator<Item = T>) {
+    for (to, item) in array.to_mut()[first..].iter_mut().zip(items) {
+        *to = item;
+    }
+}
+
+fn as_usize(range: &Range<u32>) -> Range<usize> {
+    range.start as usize..range.end as usize
+}
+
+fn placed(rotation: DQuat, pose: &Pose, p: Vec3) -> Vec3 {
+    // Adding zero turns -0 into 0, as welding does.
+    (rotation * p.as_dvec3() + pose.translation).as_vec3() + Vec3::ZERO
+}
+
+fn check(rest: &[Vec3], pose: &Pose) -> Result<(), ObjectError> {
+    let rotation = pose.rotation.normalize();
+    let finite = rotation.is_finite()
+        && pose.translation.is_finite()
+        && rest.iter().all(|p| placed(rotation, pose, *p).is_finite());
+    finite.then_some(()).ok_or(ObjectError::Pose)
+}

@@ -1,0 +1,280 @@
+//! Receivers: which lights reach visible surface, and which quads can matter for it, found on the
+//! GPU from the host's depth buffer.
+//!
+//! Takes a plan's lights and quads; gives the arguments of indirect draws and, light by light, the
+//! quads that are left. Needs indirect draws that may begin with any instance, and one sample a
+//! pixel; without them every light of the plan is drawn whole.
+
+use std::borrow::Cow;
+
+use bytemuck::{Pod, Zeroable};
+use umbrage_core::cull::{Cull, Culls};
+use umbrage_core::frame::{LightPath, LightPlan};
+use umbrage_core::{Light, View};
+use wgpu::{
+    BindGroupLayout, BindingType, Buffer, BufferBindingType, BufferUsages, ComputePipeline, Device,
+    Queue, ShaderStages, TextureView,
+};
+
+use crate::buffers::{Growing, Written};
+use crate::{CLIP_WGSL, Frame, RenderError};
+
+/// The indirect calls of one light, as the shader writes them.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct LightCalls {
+    /// Silhouette quads, six vertices each.
+    pub sides: Call,
+    /// Caps of triangles taken as wound.
+    pub caps: Call,
+    /// Caps of triangles taken with reversed winding.
+    pub reversed_caps: Call,
+    /// The host's light draw: six vertices a row of tiles.
+    pub light: Call,
+    /// The draw that zeroes the stencil: three vertices, if there is a volume.
+    pub clean: Call,
+}
+
+/// Arguments of an indirect draw.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct Call {
+    /// Vertices drawn.
+    pub vertex_count: u32,
+    /// 1, or 0 for a light that reaches no visible surface.
+    pub instance_count: u32,
+    /// First vertex.
+    pub first_vertex: u32,
+    /// The light's number.
+    pub first_instance: u32,
+}
+
+impl LightCalls {
+    pub(crate) const SIDES: u64 = 0;
+    pub(crate) const CAPS: u64 = 16;
+    pub(crate) const REVERSED_CAPS: u64 = 32;
+    pub(crate) const LIGHT: u64 = 48;
+    pub(crate) const CLEAN: u64 = 64;
+    pub(crate) const SIZE: u64 = size_of::<Self>() as u64;
+}
+
+/// `struct LightPlan` of the shader.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+struct PlanUniform {
+    homogeneous: [f32; 4],
+    tiles: [u32; 4],
+    quads: [u32; 2],
+    caps: [u32; 2],
+    reversed_caps: [u32; 2],
+    range: f32,
+    path: u32,
+}
+
+/// A range beyond anything, whose square is finite.
+const FARTHEST: f32 = 1e18;
+
+/// Pixels a tile is wide and high; known to the shaders.
+const TILE: u32 = 8;
+
+/// Rows of tiles in a view.
+pub(crate) fn tile_rows(view: &View) -> u32 {
+    view.size[1].div_ceil(TILE)
+}
+
+#[derive(Debug)]
+pub(crate) struct Receivers {
+    surface: ComputePipeline,
+    light: ComputePipeline,
+    layout: BindGroupLayout,
+    plan: Growing,
+    tiles: Growing,
+    pub(crate) kept_quads: Growing,
+    pub(crate) calls: Growing,
+}
+
+/// What the shader reads and does not own.
+pub(crate) struct Inputs<'a> {
+    pub(crate) view: &'a Buffer,
+    pub(crate) positions: &'a Buffer,
+    pub(crate) edges: &'a Buffer,
+    pub(crate) quads: &'a Buffer,
+    pub(crate) spans: &'a Buffer,
+    pub(crate) depth: &'a TextureView,
+}
+
+impl Receivers {
+    /// `None` where the device lacks what it takes.
+    pub(crate) fn new(device: &Device, sample_count: u32) -> Option<Self> {
+        let features = device.features();
+        if sample_count != 1 || !features.contains(wgpu::Features::INDIRECT_FIRST_INSTANCE) {
+            return None;
+        }
+        let layout = bind_group_layout(device);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("umbrage receivers"),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
+                "{CLIP_WGSL}\n{}",
+                include_str!("shaders/receivers.wgsl")
+            ))),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("umbrage receivers"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = |entry| {
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("umbrage receivers"),
+                layout: Some(&pipeline_layout),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
+        };
+        let read = BufferUsages::COPY_SRC;
+        Some(Self {
+            surface: pipeline("surface"),
+            light: pipeline("light"),
+            layout,
+            plan: Growing::new(device, "umbrage plan", BufferUsages::empty()),
+            tiles: Growing::new(device, "umbrage tiles", BufferUsages::empty()),
+            kept_quads: Growing::new(device, "umbrage kept quads", BufferUsages::empty()),
+            calls: Growing::new(device, "umbrage calls", BufferUsages::INDIRECT | read),
+        })
+    }
+
+    /// Makes room, uploads the plan; the buffers' names change where `replaced` says so.
+    pub(crate) fn prepare(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        frame: &Frame<'_>,
+    ) -> Result<Written, RenderError> {
+        let lights = frame.lights.iter().zip(&frame.plan.lights);
+        let mut uniforms: Vec<PlanUniform> = lights
+            .map(|(light, plan)| PlanUniform::new(light, plan, frame.culls))
+            .collect();
+        if uniforms.is_empty() {
+            uniforms.push(PlanUniform::default());
+        }
+        let [columns, rows] = frame.view.size.map(|side| u64::from(side.div_ceil(TILE)));
+        let mut written = self
+            .plan
+            .write(device, queue, bytemuck::cast_slice(&uniforms))?;
+        written.replaced |= self.tiles.reserve(device, columns * rows * 32)?;
+        written.replaced |= self
+            .kept_quads
+            .reserve(device, 4 * frame.volumes.quads.len() as u64)?;
+        let calls = uniforms.len() as u64 * LightCalls::SIZE;
+        written.replaced |= self.calls.reserve(device, calls)?;
+        Ok(written)
+    }
+
+    pub(crate) fn record(
+        &self,
+        device: &Device,
+        encoder: &mut wgpu::CommandEncoder,
+        inputs: &Inputs<'_>,
+        size: [u32; 2],
+        lights: u32,
+        timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    ) {
+        let plan = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.plan.buffer,
+            offset: 0,
+            size: wgpu::BufferSize::new(u64::from(lights) * size_of::<PlanUniform>() as u64),
+        });
+        let resources = [
+            inputs.view.as_entire_binding(),
+            inputs.positions.as_entire_binding(),
+            inputs.edges.as_entire_binding(),
+            inputs.quads.as_entire_binding(),
+            plan,
+            self.tiles.buffer.as_entire_binding(),
+            self.kept_quads.buffer.as_entire_binding(),
+            self.calls.buffer.as_entire_binding(),
+            wgpu::BindingResource::TextureView(inputs.depth),
+            inputs.spans.as_entire_binding(),
+        ];
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("umbrage receivers"),
+            layout: &self.layout,
+            entries: &entries,
+        });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("umbrage receivers"),
+            timestamp_writes,
+        });
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.set_pipeline(&self.surface);
+        let [columns, rows] = size.map(|side| side.div_ceil(TILE * 8));
+        pass.dispatch_workgroups(columns, rows, 1);
+        pass.set_pipeline(&self.light);
+        let columns = lights.min(1 << 15);
+        pass.dispatch_workgroups(columns, lights.div_ceil(columns.max(1)), 1);
+    }
+}
+
+impl PlanUniform {
+    fn new(light: &Light, plan: &LightPlan, culls: Culls) -> Self {
+        let s = plan.scissor;
+        let ends = |r: &std::ops::Range<u32>| [r.start, r.end];
+        let path = match plan.path {
+            LightPath::Skipped(_) => 0,
+            LightPath::ZPass { .. } => 1,
+            LightPath::ZFail(_) => 2,
+        };
+        let unasked = |step, bit| if culls.has(step) { 0 } else { bit };
+        Self {
+            homogeneous: light.homogeneous(),
+            tiles: [
+                s.x / TILE,
+                s.y / TILE,
+                (s.x + s.width).div_ceil(TILE),
+                (s.y + s.height).div_ceil(TILE),
+            ],
+            quads: ends(&plan.quads),
+            caps: ends(&plan.caps),
+            reversed_caps: ends(&plan.reversed_caps),
+            range: light.range.min(FARTHEST),
+            path: path | unasked(Cull::Receivers, 4) | unasked(Cull::Quads, 8),
+        }
+    }
+}
+
+fn bind_group_layout(device: &Device) -> BindGroupLayout {
+    let buffer = |ty| BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let storage = |read_only| buffer(BufferBindingType::Storage { read_only });
+    let mut types = vec![buffer(BufferBindingType::Uniform)];
+    types.extend([storage(true); 4]);
+    types.extend([storage(false); 3]);
+    types.push(BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    });
+    types.push(storage(false));
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("umbrage receivers"),
+        entries: &entries,
+    })
+}

@@ -1,0 +1,255 @@
+// What of the world each light can be seen to light, and which of its quads matter for that.
+//
+// First the depth buffer becomes boxes of visible surface, one a tile. Then each light joins the
+// boxes in its range: a light with none is not drawn, and a quad that cannot meet the hull of the
+// eye and that box crosses no eye ray that ends there. Everything is relative to the eye.
+
+@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(1) var<storage, read> positions: array<f32>;
+@group(0) @binding(2) var<storage, read> edges: array<vec2u>;
+@group(0) @binding(3) var<storage, read> quads: array<u32>;
+@group(0) @binding(4) var<storage, read> plan: array<LightPlan>;
+@group(0) @binding(5) var<storage, read_write> tiles: array<Box>;
+@group(0) @binding(6) var<storage, read_write> kept_quads: array<u32>;
+@group(0) @binding(7) var<storage, read_write> calls: array<LightCalls>;
+@group(0) @binding(8) var depth_texture: texture_depth_2d;
+@group(0) @binding(9) var<storage, read_write> spans: array<u32>;
+
+struct LightPlan {
+    homogeneous: vec4f,
+    // first x, first y, end x, end y
+    tiles: vec4u,
+    // first and end
+    quads: vec2u,
+    caps: vec2u,
+    reversed_caps: vec2u,
+    range: f32,
+    // 0 not drawn, 1 z-pass, 2 z-fail; 4 is added where the receivers are not asked, 8 where the
+    // quads are not
+    path: u32,
+}
+
+struct Box {
+    low: vec3f,
+    // Surface was seen.
+    some: u32,
+    high: vec3f,
+    unused: u32,
+}
+
+struct Call {
+    vertex_count: u32,
+    instance_count: u32,
+    first_vertex: u32,
+    first_instance: u32,
+}
+
+struct LightCalls {
+    sides: Call,
+    caps: Call,
+    reversed_caps: Call,
+    light: Call,
+    clean: Call,
+}
+
+const TILE: u32 = 8u;
+
+// Farther than anything; its square is finite.
+const FAR: f32 = 1e18;
+
+// What a depth may be off by: interpolated over a triangle that reaches to the near plane, where
+// depth is 1.
+const DEPTH_ERROR: f32 = 1.0 / 2097152.0;
+
+fn nothing() -> Box {
+    return Box(vec3f(FAR), 0u, vec3f(-FAR), 0u);
+}
+
+fn joined(a: Box, b: Box) -> Box {
+    return Box(min(a.low, b.low), a.some | b.some, max(a.high, b.high), 0u);
+}
+
+fn with_point(a: Box, p: vec3f, margin: vec3f) -> Box {
+    return Box(min(a.low, p - margin), 1u, max(a.high, p + margin), 0u);
+}
+
+@compute @workgroup_size(8, 8)
+fn surface(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(depth_texture);
+    let across = (size + TILE - 1u) / TILE;
+    if any(id.xy >= across) {
+        return;
+    }
+    var box = nothing();
+    let end = min((id.xy + 1u) * TILE, size);
+    for (var y = id.y * TILE; y < end.y; y++) {
+        for (var x = id.x * TILE; x < end.x; x++) {
+            let depth = textureLoad(depth_texture, vec2u(x, y), 0);
+            if depth > 0.0 {
+                let pixel = vec2f(f32(x), f32(y)) + 0.5;
+                let ndc = vec2f(2.0, -2.0) * pixel / vec2f(size) + vec2f(-1.0, 1.0);
+                let ray = view.forward + view.right * (ndc.x / view.scale_x)
+                    + view.up * (ndc.y / view.scale_y);
+                // Before the near plane all depths are 1.
+                let nearest = select(view.near / (depth + DEPTH_ERROR), 0.0, depth >= 1.0);
+                let farthest = min(FAR, view.near / max(depth - DEPTH_ERROR, 1e-30));
+                // A quarter of a pixel aside, which is far above any rounding of the ray.
+                let margin = farthest * 0.5 / f32(size.x)
+                    * (abs(view.right) / view.scale_x + abs(view.up) / view.scale_x);
+                box = with_point(box, nearest * ray, margin);
+                box = with_point(box, farthest * ray, margin);
+            }
+        }
+    }
+    tiles[id.y * across.x + id.x] = box;
+}
+
+const LANES: u32 = 64u;
+var<workgroup> boxes: array<Box, LANES>;
+var<workgroup> receivers: Box;
+var<workgroup> kept: atomic<u32>;
+
+@compute @workgroup_size(64)
+fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) lane: u32)
+{
+    let number = group.y * groups.x + group.x;
+    if number >= arrayLength(&plan) {
+        return;
+    }
+    let ours = plan[number];
+    let path = ours.path & 3u;
+    if path == 0u {
+        return;
+    }
+    let homogeneous = ours.homogeneous;
+    if lane == 0u {
+        atomicStore(&kept, 0u);
+    }
+    boxes[lane] = in_range(number, ours, homogeneous, lane);
+    workgroupBarrier();
+    if lane == 0u {
+        var box = nothing();
+        for (var i = 0u; i < LANES; i++) {
+            box = joined(box, boxes[i]);
+        }
+        receivers = box;
+    }
+    workgroupBarrier();
+    let box = workgroupUniformLoad(&receivers);
+    if box.some != 0u {
+        let all = path == 2u || (ours.path & 8u) != 0u;
+        for (var i = ours.quads.x + lane; i < ours.quads.y; i += LANES) {
+            let quad = quads[i];
+            if all || meets_hull(quad, homogeneous, box) {
+                kept_quads[ours.quads.x + atomicAdd(&kept, 1u)] = quad;
+            }
+        }
+    }
+    workgroupBarrier();
+    if lane == 0u {
+        let drawn = select(0u, 1u, box.some != 0u);
+        let count = atomicLoad(&kept);
+        let caps = ours.caps.y - ours.caps.x;
+        let reversed = ours.reversed_caps.y - ours.reversed_caps.x;
+        calls[number] = LightCalls(
+            Call(6u * count, drawn, 6u * ours.quads.x, number),
+            Call(6u * caps, drawn, 6u * ours.caps.x, number),
+            Call(6u * reversed, drawn, 6u * ours.reversed_caps.x, number),
+            Call(6u * (ours.tiles.w - ours.tiles.y), drawn, 6u * ours.tiles.y, number),
+            Call(3u, min(drawn, count + caps + reversed), 0u, number),
+        );
+    }
+}
+
+// The visible surface that may lie in the light's range, in every 64th row of tiles; and for each
+// of these rows the span of tiles that has any.
+fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box {
+    let across = (textureDimensions(depth_texture) + TILE - 1u) / TILE;
+    let center = homogeneous.xyz - view.eye;
+    // Far above the rounding of the distance, and below what a tile's box adds to it.
+    let range = ours.range * 1.00390625;
+    let asked = (ours.path & 4u) == 0u;
+    var found = nothing();
+    for (var y = ours.tiles.y + lane; y < ours.tiles.w; y += LANES) {
+        var first = ours.tiles.z;
+        var end = ours.tiles.x;
+        for (var x = ours.tiles.x; x < ours.tiles.z; x++) {
+            var box = Box(vec3f(-FAR), 1u, vec3f(FAR), 0u);
+            if asked {
+                box = tiles[y * across.x + x];
+                if box.some != 0u && homogeneous.w != 0.0 {
+                    let aside = max(max(box.low - center, center - box.high), vec3f(0.0));
+                    box.some = select(0u, 1u, dot(aside, aside) <= range * range);
+                    box.low = max(box.low, center - range);
+                    box.high = min(box.high, center + range);
+                }
+            }
+            if box.some != 0u {
+                found = joined(found, box);
+                first = min(first, x);
+                end = x + 1u;
+            }
+        }
+        let span = select(0u, first * TILE | (end * TILE) << 16u, first < end);
+        spans[1u + number * across.y + y] = span;
+    }
+    return found;
+}
+
+// The largest and the least value of dot(normal, x - foot) over the hull of the eye and a box. The
+// normal is a product of unit vectors: shorter than 1, and off by some 2^-23 however short it is.
+fn over_hull(normal: vec3f, foot: vec3f, box: Box) -> vec2f {
+    let middle = 0.5 * (box.low + box.high);
+    let half = 0.5 * (box.high - box.low);
+    let at_eye = -dot(normal, foot);
+    let at_middle = at_eye + dot(normal, middle);
+    let spread = dot(abs(normal), half);
+    let sizes = abs(foot) + abs(middle) + half;
+    let error = (sizes.x + sizes.y + sizes.z) / 262144.0;
+    return vec2f(max(at_eye, at_middle + spread) + error, min(at_eye, at_middle - spread) - error);
+}
+
+fn position(vertex: u32) -> vec3f {
+    let i = 3u * vertex;
+    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
+}
+
+// False only if a plane separates the quad from the hull of the eye and the box. Tried are the
+// planes of the box, the quad's own plane, and the three planes upright on it through its edges.
+fn meets_hull(quad: u32, light: vec4f, box: Box) -> bool {
+    let ends = edges[quad >> 1u];
+    let pa = position(ends.x);
+    let pb = position(ends.y);
+    let a = pa - view.eye;
+    let b = pb - view.eye;
+    let away_a = pa * light.w - light.xyz;
+    let away_b = pb * light.w - light.xyz;
+
+    let low = min(box.low, vec3f(0.0));
+    let high = max(box.high, vec3f(0.0));
+    let slack = (abs(a) + abs(b)) / 262144.0;
+    let recedes = min(away_a, away_b) >= vec3f(0.0);
+    let precedes = max(away_a, away_b) <= vec3f(0.0);
+    if any((min(a, b) - slack > high) & recedes) || any((max(a, b) + slack < low) & precedes) {
+        return false;
+    }
+
+    // Where one of these is no direction (NaN) no comparison holds, and the quad stays.
+    let along = normalize(b - a);
+    let ray_a = normalize(away_a);
+    let ray_b = normalize(away_b);
+    let normal = cross(along, ray_a);
+    let plane = over_hull(normal, a, box);
+    if plane.y > 0.0 || plane.x < 0.0 {
+        return false;
+    }
+    let beside_a = cross(normal, ray_a);
+    let beside_b = cross(normal, ray_b);
+    let beyond = cross(along, normal);
+    let turn = sign(dot(beside_a, along));
+    let ahead = sign(dot(beyond, ray_a));
+    return !(over_hull(beside_a * turn, a, box).x < 0.0
+        || over_hull(-beside_b * turn, b, box).x < 0.0
+        || over_hull(beyond * ahead, a, box).x < 0.0);
+}
