@@ -128,6 +128,8 @@ fn what_is_wrong_is_said() {
     let mesh = grid(1);
     let missing = place.open(mesh.fingerprint()).unwrap_err();
     assert!(matches!(missing, SavedWorldError::Io(_)), "{missing}");
+    let folder = World::open(&place.0, mesh.fingerprint()).unwrap_err();
+    assert!(matches!(folder, SavedWorldError::NotASavedWorld));
     place.saved(&mesh);
     let stale = place.open(grid(3).fingerprint()).unwrap_err();
     assert!(matches!(stale, SavedWorldError::Stale), "{stale}");

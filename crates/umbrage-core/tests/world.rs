@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::collections::{HashMap, HashSet};
+
 use common::{dense_soup, grid, strewn_soup};
 use glam::Vec3;
 use umbrage_core::world::{EdgeUse, World, WorldError, WorldFault};
@@ -38,6 +40,46 @@ fn random_soups_keep_every_invariant() {
             assert_eq!(world.corners(t as u32), soup.corners(source as usize));
             assert_eq!(world.casting[t], soup.casting[source as usize]);
         }
+    }
+}
+
+/// Against the plain way to count: a map from vertex pairs to triangles.
+#[test]
+fn counts_are_those_of_a_map() {
+    for soup in [
+        dense_soup(1, 9, 3000),
+        dense_soup(2, 40, 5000),
+        strewn_soup(3, 30_000, 0.1),
+        grid(40),
+    ] {
+        let world = World::build(&soup).unwrap();
+        let (mut edges, mut triples) = (HashMap::new(), HashSet::new());
+        let mut duplicates = 0;
+        for &t in &world.triangles {
+            let mut sorted = t;
+            sorted.sort_unstable();
+            duplicates += usize::from(!triples.insert(sorted));
+            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+                let along: &mut Vec<bool> = edges.entry((a.min(b), a.max(b))).or_default();
+                along.push(a < b);
+            }
+        }
+        let mut by_triangles = [0; 4];
+        for along in edges.values() {
+            by_triangles[along.len().min(4) - 1] += 1;
+        }
+        let alike = |along: &&Vec<bool>| along.len() == 2 && along[0] == along[1];
+        let report = &world.report;
+        assert_eq!(report.unique_edges, edges.len());
+        assert_eq!(report.edges_by_triangles, by_triangles);
+        assert_eq!(
+            report.opposite_wound_pairs,
+            edges.values().filter(alike).count()
+        );
+        assert_eq!(report.duplicate_triangles, duplicates);
+        let distinct = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
+        let positions: HashSet<_> = soup.positions.iter().map(distinct).collect();
+        assert_eq!(report.welded_vertices, positions.len());
     }
 }
 

@@ -49,6 +49,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Building a world takes about a second for a million triangles; [`World::save`] keeps it in a
+//! file that [`World::open`] maps in milliseconds, if it is still that of the same
+//! [`Mesh::fingerprint`].
+//!
 //! # In a frame: volumes to a shadow mask
 //!
 //! The host owns device, queue, encoder and depth buffer. Its depth pass computes clip positions

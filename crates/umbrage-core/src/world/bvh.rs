@@ -5,6 +5,7 @@ use glam::{Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
+use rayon::prelude::*;
 
 use super::array::Array;
 use crate::mesh::Mesh;
@@ -61,7 +62,7 @@ pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
         return (Bvh::default(), Vec::new());
     }
     let bounds: Vec<Bounds> = kept
-        .iter()
+        .par_iter()
         .map(|&t| {
             Bounds(Aabb::from_points(
                 &mesh.corners(t as usize).map(Vec3A::from),

@@ -1,14 +1,17 @@
-//! Unique edges by radix sort of packed vertex pairs.
+//! The table of unique edges.
 //!
-//! Takes triangles over welded vertices; gives the edge table and each triangle's use of it.
-//! The 2004 paper left this step as future work (Aldridge and Woods, section 2.7).
+//! Takes triangles and their sides grouped by edge; gives each edge a number, by first use, its
+//! vertices, and each triangle's use of it.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use bytemuck::{Pod, Zeroable};
-use rdst::{RadixKey, RadixSort};
+use rayon::prelude::*;
 
-use super::WorldReport;
 use super::array::Array;
 use super::clusters::LANES;
+use super::half_edges::Grouped;
+use super::lanes;
 
 /// One side of a triangle: which edge it is, and whether the triangle runs along it or against.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
@@ -62,73 +65,30 @@ impl Edges {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct HalfEdge {
-    /// Lower vertex in the high half, so that the order is lexicographic.
-    pair: u64,
-    /// 3 * triangle + side.
-    side: u32,
-}
-
-impl RadixKey for HalfEdge {
-    const LEVELS: usize = 8;
-
-    #[inline]
-    fn get_level(&self, level: usize) -> u8 {
-        (self.pair >> (8 * level)) as u8
-    }
-}
-
-pub(super) fn unique_edges(triangles: &[[u32; 3]], report: &mut WorldReport) -> Edges {
-    let mut halves: Vec<HalfEdge> = triangles
-        .iter()
+/// The edge table of grouped sides.
+pub(super) fn edges(triangles: &[[u32; 3]], grouped: &Grouped) -> Edges {
+    let numbers = Numbers::new(&grouped.first);
+    let mut vertices = vec![[0; 2]; grouped.counts.edges];
+    numbers.place(&mut vertices, |side| {
+        let (from, to) = ends(triangles, side);
+        [from.min(to), from.max(to)]
+    });
+    let cluster = |(number, triangles): (usize, &[[u32; 3]])| {
+        let mut sides = [[EdgeUse::default(); LANES]; 3];
+        let first = &grouped.first[3 * LANES * number..];
+        for (lane, (&[a, b, c], first)) in triangles.iter().zip(first.chunks_exact(3)).enumerate() {
+            for (k, reversed) in [b < a, c < b, a < c].into_iter().enumerate() {
+                let edge = numbers.of_first_side(first[k].load(Relaxed));
+                sides[k][lane] = EdgeUse::new(edge, reversed);
+            }
+        }
+        sides
+    };
+    let sides: Vec<_> = triangles
+        .par_chunks(LANES)
         .enumerate()
-        .flat_map(|(t, &[a, b, c])| {
-            [(a, b), (b, c), (c, a)]
-                .into_iter()
-                .zip(0u32..)
-                .map(move |((from, to), k)| HalfEdge {
-                    pair: u64::from(from.min(to)) << 32 | u64::from(from.max(to)),
-                    side: 3 * t as u32 + k,
-                })
-        })
+        .map(cluster)
         .collect();
-    halves.radix_sort_unstable();
-
-    // Each run of equal pairs is one edge. Let every side know the first side of its run, so that
-    // one pass in triangle order can number the edges by first use.
-    let mut first_side = vec![0u32; halves.len()];
-    for run in halves.chunk_by(|a, b| a.pair == b.pair) {
-        let first = run.iter().map(|h| h.side).min().unwrap_or_default();
-        let along = run.iter().filter(|h| runs_along(triangles, h.side)).count();
-        for half in run {
-            first_side[half.side as usize] = first;
-        }
-        report.unique_edges += 1;
-        report.edges_by_triangles[run.len().min(4) - 1] += 1;
-        report.opposite_wound_pairs += usize::from(run.len() == 2 && along != 1);
-    }
-    drop(halves);
-
-    let mut vertices = Vec::with_capacity(report.unique_edges);
-    let mut edge_of_side = vec![0u32; first_side.len()];
-    for (side, &first) in first_side.iter().enumerate() {
-        edge_of_side[side] = if first as usize == side {
-            let (from, to) = ends(triangles, side as u32);
-            vertices.push([from.min(to), from.max(to)]);
-            vertices.len() as u32 - 1
-        } else {
-            edge_of_side[first as usize]
-        };
-    }
-    let mut sides = vec![[[EdgeUse::default(); LANES]; 3]; triangles.len().div_ceil(LANES)];
-    for t in 0..triangles.len() {
-        let lanes = sides[t / LANES].iter_mut().map(|side| &mut side[t % LANES]);
-        for (side, lane) in (3 * t as u32..).zip(lanes) {
-            *lane = EdgeUse::new(edge_of_side[side as usize], !runs_along(triangles, side));
-        }
-    }
-    report.duplicate_triangles = count_duplicates(triangles);
     Edges {
         vertices: vertices.into(),
         sides: sides.into(),
@@ -141,32 +101,60 @@ fn ends(triangles: &[[u32; 3]], side: u32) -> (u32, u32) {
     (corners[k], corners[(k + 1) % 3])
 }
 
-fn runs_along(triangles: &[[u32; 3]], side: u32) -> bool {
-    let (from, to) = ends(triangles, side);
-    from < to
+/// Numbers edges by first use: an edge's number is how many first sides stand before its own.
+/// Kept as bits with a count each 64, which stay in the cache where numbers would not.
+struct Numbers {
+    /// Bit i of word w: side 64 w + i is the first on its edge.
+    first: Vec<u64>,
+    /// First sides before each word.
+    before: Vec<u32>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Corners([u32; 3]);
-
-impl RadixKey for Corners {
-    const LEVELS: usize = 12;
+impl Numbers {
+    fn new(first_side: &[AtomicU32]) -> Self {
+        let word = |(number, sides): (usize, &[AtomicU32])| {
+            let is_first = |(bit, side): (usize, &AtomicU32)| {
+                u64::from(side.load(Relaxed) as usize == 64 * number + bit) << bit
+            };
+            sides.iter().enumerate().map(is_first).sum()
+        };
+        let words = first_side.par_chunks(64).enumerate().with_min_len(256);
+        let first: Vec<u64> = words.map(word).collect();
+        let mut sum = 0;
+        let before = first.iter().map(|word| {
+            sum += word.count_ones();
+            sum - word.count_ones()
+        });
+        Self {
+            before: before.collect(),
+            first,
+        }
+    }
 
     #[inline]
-    fn get_level(&self, level: usize) -> u8 {
-        (self.0[level / 4] >> (8 * (level % 4))) as u8
+    fn of_first_side(&self, side: u32) -> u32 {
+        let (word, bit) = (side as usize / 64, side % 64);
+        let below = self.first[word] & ((1 << bit) - 1);
+        self.before[word] + below.count_ones()
     }
-}
 
-fn count_duplicates(triangles: &[[u32; 3]]) -> usize {
-    let mut corners: Vec<Corners> = triangles
-        .iter()
-        .map(|&t| {
-            let mut t = t;
-            t.sort_unstable();
-            Corners(t)
-        })
-        .collect();
-    corners.radix_sort_unstable();
-    corners.windows(2).filter(|w| w[0].0 == w[1].0).count()
+    /// Fills `list`, one item an edge, with what `of` says of the edge's first side.
+    fn place<T: Send>(&self, mut list: &mut [T], of: impl Fn(u32) -> T + Sync) {
+        const CHUNK: usize = 1 << 8;
+        let mut chunks = Vec::new();
+        for (number, words) in self.first.chunks(CHUNK).enumerate() {
+            let edges: u32 = words.iter().map(|word| word.count_ones()).sum();
+            let (items, rest) = list.split_at_mut(edges as usize);
+            chunks.push((number, words, items));
+            list = rest;
+        }
+        chunks.into_par_iter().for_each(|(number, words, items)| {
+            let first_sides = (number * CHUNK..)
+                .zip(words)
+                .flat_map(|(at, &word)| lanes(word).map(move |bit| 64 * at as u32 + bit));
+            for (item, side) in items.iter_mut().zip(first_sides) {
+                *item = of(side);
+            }
+        });
+    }
 }

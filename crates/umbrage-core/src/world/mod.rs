@@ -9,11 +9,13 @@ mod boxes;
 mod bvh;
 mod clusters;
 mod edges;
+mod half_edges;
 mod memory;
 mod objects;
 mod planes;
 mod query;
 mod save;
+pub mod stages;
 mod subset;
 mod validate;
 mod weld;
@@ -39,6 +41,7 @@ pub(crate) use planes::{FILTER, exact_side};
 pub(crate) use subset::lanes;
 pub use validate::WorldFault;
 
+use self::stages::Tree;
 use crate::mesh::{Casting, Mesh};
 use crate::stamp;
 
@@ -195,42 +198,34 @@ impl World {
             ..WorldReport::default()
         };
 
-        let welded = weld::weld(&mesh.positions);
+        let welded = stages::weld(mesh);
         report.welded_vertices = welded.count;
+        report.triangles = welded.kept.len();
+        report.degenerate_triangles = mesh.triangles.len() - welded.kept.len();
         report.build_ms.weld = clock.lap();
 
-        let kept: Vec<u32> = (0..mesh.triangles.len() as u32)
-            .filter(|&t| {
-                let [a, b, c] = mesh.triangles[t as usize].map(|v| welded.vertex[v as usize]);
-                a != b && b != c && c != a
-            })
-            .collect();
-        report.triangles = kept.len();
-        report.degenerate_triangles = mesh.triangles.len() - kept.len();
-
-        let (bvh, order) = bvh::build(mesh, &kept);
+        let Tree { bvh, source } = stages::tree(mesh, &welded);
         report.build_ms.bvh = clock.lap();
 
-        let source: Vec<u32> = order.iter().map(|&i| kept[i as usize]).collect();
-        let casting: Vec<Casting> = source.iter().map(|&t| mesh.casting[t as usize]).collect();
-        let (positions, triangles) = weld::renumber(mesh, &welded, &source);
-        let planes = Planes::new(&positions, &triangles);
-        let boxes = boxes::boxes(&positions, &triangles);
+        let ordered = stages::order(mesh, &welded, &source);
         report.build_ms.order = clock.lap();
 
-        let edges = edges::unique_edges(&triangles, &mut report);
-        let clusters = clusters::clusters(&casting, &edges);
+        let joined = stages::edges(&ordered);
+        report.unique_edges = joined.counts.edges;
+        report.edges_by_triangles = joined.counts.by_triangles;
+        report.opposite_wound_pairs = joined.counts.opposite_wound_pairs;
+        report.duplicate_triangles = joined.counts.duplicate_triangles;
         report.build_ms.edges = clock.lap();
 
         let mut world = Self {
-            positions: positions.into(),
-            triangles: triangles.into(),
+            positions: ordered.positions.into(),
+            triangles: ordered.triangles.into(),
             source: source.into(),
-            casting: casting.into(),
-            edges,
-            clusters: clusters.into(),
-            planes,
-            boxes: boxes.into(),
+            casting: ordered.casting.into(),
+            edges: joined.edges,
+            clusters: joined.clusters.into(),
+            planes: ordered.planes,
+            boxes: ordered.boxes.into(),
             bvh,
             report,
             ..Self::default()

@@ -5,6 +5,7 @@
 //! another mesh or another kind of machine is refused, never repaired: building is the repair.
 
 mod bounds;
+mod error;
 mod layout;
 
 use std::fs::{self, File};
@@ -14,67 +15,14 @@ use std::path::{Path, PathBuf};
 
 use bytemuck::{CheckedBitPattern, NoUninit};
 use rayon::prelude::*;
-use thiserror::Error;
 
+pub use self::error::SavedWorldError;
 use self::layout::{
     ALIGNMENT, BYTE_ORDER, Contents, Head, MAGIC, Placed, Preamble, Section, VERSION,
 };
 use super::array::{Array, MappedFile};
 use super::{Bvh, Edges, Extent, LANES, Planes, World};
 use crate::fingerprint::{Fingerprint, checksum};
-
-/// Why a file cannot be opened as a world, or a world not be saved.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum SavedWorldError {
-    /// It does not begin as saved worlds do.
-    #[error("not a saved world: choose another file")]
-    NotASavedWorld,
-    /// Written on a machine that stores numbers the other way round.
-    #[error("saved on a machine with another byte order: build the world here and save it again")]
-    OtherByteOrder,
-    /// Another version of the format.
-    #[error(
-        "saved in format {found}, this is format {expected}: build the world and save it again"
-    )]
-    OtherVersion {
-        /// In the file.
-        found: u32,
-        /// The only one that is read.
-        expected: u32,
-    },
-    /// Shorter or longer than it says.
-    #[error("{found} bytes of {expected}: incomplete; build the world and save it again")]
-    Truncated {
-        /// Bytes in the file.
-        found: u64,
-        /// Bytes it should have.
-        expected: u64,
-    },
-    /// A checksum does not match.
-    #[error("damaged in its {section}: build the world and save it again")]
-    Damaged {
-        /// Array, or "head".
-        section: &'static str,
-    },
-    /// Made from another mesh.
-    #[error(
-        "stale: made from other triangles, casting rules or origin; \
-         build the world and save it again"
-    )]
-    Stale,
-    /// Whole, but not a world: something points outside.
-    #[error("{section}[{item}] is not valid in a world: build the world and save it again")]
-    Invalid {
-        /// Array.
-        section: &'static str,
-        /// Index into it.
-        item: usize,
-    },
-    /// What the system says.
-    #[error(transparent)]
-    Io(#[from] io::Error),
-}
 
 impl World {
     /// What of an array is not an object's.
@@ -148,11 +96,12 @@ impl World {
     /// # Errors
     /// Anything but an undamaged world of this format and this mesh is refused.
     pub fn open(path: &Path, fingerprint: Fingerprint) -> Result<Self, SavedWorldError> {
-        let file = File::open(path)?;
-        if file.metadata()?.len() < size_of::<Preamble>() as u64 {
+        // Asked before opening: that would wait for whoever writes to a pipe.
+        let found = fs::metadata(path)?;
+        if !found.is_file() || found.len() < size_of::<Preamble>() as u64 {
             return Err(SavedWorldError::NotASavedWorld);
         }
-        let file = MappedFile::new(&file)?;
+        let file = MappedFile::new(&File::open(path)?)?;
         let contents = contents(file.bytes())?;
         if contents.fingerprint != fingerprint {
             return Err(SavedWorldError::Stale);
