@@ -1,8 +1,9 @@
 //! `umbrage volumes`: volume generation alone, without a GPU, by every method in one run.
 //!
-//! All methods share query and facing, so that what differs is the algorithm. Methods are timed
-//! in turn, repeat by repeat, on one thread; the library's own build on all
-//! threads is timed beside them.
+//! All methods share query and facing, so that what differs is the algorithm; `counter-cuts` also
+//! leaves out hidden casters and counts the quads that an eye within the light's reach needs.
+//! Methods are timed in turn, repeat by repeat, on one thread; the library's own build on one
+//! thread and on all is timed beside them.
 
 mod methods;
 

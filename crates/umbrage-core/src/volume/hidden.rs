@@ -11,6 +11,7 @@
 
 mod choice;
 mod cover;
+mod cut;
 mod grid;
 mod reach;
 mod sight;

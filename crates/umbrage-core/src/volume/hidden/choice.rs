@@ -1,35 +1,30 @@
 //! Which of the hidden casters to leave out: those whose absence leaves the fewest quads.
 //!
-//! Takes casters with verdicts; gives the set to drop. Any set of hidden casters may be dropped,
-//! but one whose neighbours stay leaves its edges open. The number of quads is the sum over edges
-//! of |counter|. An edge between two hidden casters wound alike costs a quad if one of them stays
-//! and the other goes, an edge with one hidden caster costs according to what else is on it: so
-//! the best set is a minimum cut, found here by blocking flows (Dinic 1970) with at most three
-//! arcs a node. Edges of more than two casters need not fit that model: single flips that lower
-//! the true sum follow.
+//! Takes casters with marks; takes the mark from those that are better left in. Any set of hidden
+//! casters may be dropped, but one whose neighbours stay leaves its edges open. The number of
+//! quads is the sum over edges of |counter|. An edge of two hidden casters wound alike costs a
+//! quad if one of them stays and the other goes, an edge of one hidden caster costs according to
+//! what else is on it: so the best set is a minimum cut. Where more than two casters share an edge
+//! the cost need not have that form; single changes that lower the true sum follow.
 
 use super::Found;
+use super::cut::MinimumCut;
 use crate::volume::{QuadRange, QuadReach};
 use crate::world::World;
 
 /// What an edge's quad costs if it may touch the light's reach, and if not.
 const COST: [i32; 2] = [16, 1];
-/// Blocking flows at most; whatever cut is found by then is used.
-const FLOWS: usize = 64;
-const NONE: u32 = u32::MAX;
-const UNREACHED: u32 = u32::MAX;
+/// Passes of single changes at most.
+const PASSES: usize = 4;
 
 /// Scratch.
 #[derive(Debug, Default)]
 pub(super) struct Choice {
-    /// By world edge: 1 + index into `edges`, 0 between calls.
+    /// By world edge: 1 + index into `edges`; 0 between calls.
     slots: Vec<u32>,
     edges: Vec<HiddenEdge>,
     nodes: Vec<Node>,
-    level: Vec<u32>,
-    next_arc: Vec<u8>,
-    queue: Vec<u32>,
-    path: Vec<(u32, u8)>,
+    cut: MinimumCut,
 }
 
 /// An edge of a hidden caster.
@@ -37,12 +32,13 @@ pub(super) struct Choice {
 struct HiddenEdge {
     edge: u32,
     cost: i32,
-    /// Sum of the signs of the casters that stay; later the counter.
+    /// Sum of the signs of the casters that are not hidden; later also of those that stay.
     counter: i32,
     /// How many hidden casters use it; the first two, as node and side.
     users: u32,
-    node: [u32; 2],
-    side: [u8; 2],
+    first: [(u32, u8); 2],
+    /// Sum of the signs of the hidden casters.
+    hidden: i32,
 }
 
 /// A hidden caster.
@@ -53,65 +49,48 @@ struct Node {
     /// Its edges, and its sign on them.
     edges: [u32; 3],
     signs: [i32; 3],
-    /// What leaving it in saves; negative: costs. Later what flow leaves of it.
-    gain: i32,
-    arcs: [Arc; 3],
     stays: bool,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Arc {
-    to: u32,
-    back: u8,
-    room: i32,
 }
 
 impl Choice {
     /// Takes the mark `hidden` from casters that are better left in.
     pub(super) fn choose(&mut self, world: &World, reach: &QuadReach, found: &mut [Found]) {
         self.collect(world, reach, found);
-        self.terms();
-        for _ in 0..FLOWS {
-            if !self.flow() {
-                break;
+        self.count_others(world, found);
+        let all = self.edges.iter();
+        let before: i64 = all.map(|e| e.cost_at(e.counter + e.hidden)).sum();
+        self.fill_cut();
+        self.cut.solve();
+        for (i, node) in (0u32..).zip(&mut self.nodes) {
+            if self.cut.stays(i) {
+                node.change(&mut self.edges);
             }
         }
-        self.take_cut();
-        self.flip();
+        self.improve();
+        let after: i64 = self.edges.iter().map(|e| e.cost_at(e.counter)).sum();
+        let worse = after > before;
         for node in &self.nodes {
-            found[node.caster as usize].hidden = !node.stays;
+            found[node.caster as usize].hidden = !(worse || node.stays);
         }
         for edge in &self.edges {
             self.slots[edge.edge as usize] = 0;
         }
     }
 
+    /// Hidden casters and their edges.
     fn collect(&mut self, world: &World, reach: &QuadReach, found: &[Found]) {
         self.slots.resize(world.edges.vertices.len(), 0);
         self.edges.clear();
         self.nodes.clear();
-        for (number, caster) in (0u32..).zip(found) {
-            if !caster.hidden {
-                continue;
-            }
+        for (caster, found) in (0u32..).zip(found).filter(|(_, found)| found.hidden) {
             let mut node = Node {
-                caster: number,
+                caster,
                 edges: [0; 3],
                 signs: [0; 3],
-                gain: 0,
-                arcs: [Arc {
-                    to: NONE,
-                    back: 0,
-                    room: 0,
-                }; 3],
                 stays: false,
             };
-            for (k, u) in world
-                .edges
-                .of_triangle(caster.triangle.triangle())
-                .into_iter()
-                .enumerate()
-            {
+            let uses = world.edges.of_triangle(found.triangle.triangle());
+            for (k, u) in (0u8..).zip(uses) {
                 let slot = &mut self.slots[u.edge() as usize];
                 if *slot == 0 {
                     let ends = world.edges.vertices[u.edge() as usize];
@@ -121,194 +100,110 @@ impl Choice {
                         cost: COST[usize::from(range != QuadRange::Reach)],
                         counter: 0,
                         users: 0,
-                        node: [NONE; 2],
-                        side: [0; 2],
+                        first: [(0, 0); 2],
+                        hidden: 0,
                     });
                     *slot = self.edges.len() as u32;
                 }
                 let edge = &mut self.edges[*slot as usize - 1];
-                if edge.users < 2 {
-                    edge.node[edge.users as usize] = self.nodes.len() as u32;
-                    edge.side[edge.users as usize] = k as u8;
+                if let Some(first) = edge.first.get_mut(edge.users as usize) {
+                    *first = (self.nodes.len() as u32, k);
                 }
                 edge.users += 1;
-                node.edges[k] = *slot - 1;
-                node.signs[k] = u.sign() * caster.triangle.coefficient();
+                let sign = u.sign() * found.triangle.coefficient();
+                edge.hidden += sign;
+                node.edges[k as usize] = *slot - 1;
+                node.signs[k as usize] = sign;
             }
             self.nodes.push(node);
         }
-        for caster in found.iter().filter(|caster| !caster.hidden) {
-            for u in world.edges.of_triangle(caster.triangle.triangle()) {
+    }
+
+    /// What casters that are not hidden leave on these edges.
+    fn count_others(&mut self, world: &World, found: &[Found]) {
+        for found in found.iter().filter(|found| !found.hidden) {
+            for u in world.edges.of_triangle(found.triangle.triangle()) {
                 let slot = self.slots[u.edge() as usize];
                 if slot != 0 {
                     self.edges[slot as usize - 1].counter +=
-                        u.sign() * caster.triangle.coefficient();
+                        u.sign() * found.triangle.coefficient();
                 }
             }
         }
     }
 
-    /// Costs of edges as gains and arcs.
-    fn terms(&mut self) {
-        for edge in &self.edges {
-            let [i, j] = edge.node;
-            let [k, l] = edge.side;
-            let sign = |node: u32, side: u8| self.nodes[node as usize].signs[side as usize];
-            if edge.users == 2 && edge.counter == 0 && sign(i, k) != sign(j, l) {
-                let arc = |to, back| Arc {
-                    to,
-                    back,
-                    room: edge.cost,
-                };
-                self.nodes[i as usize].arcs[k as usize] = arc(j, l);
-                self.nodes[j as usize].arcs[l as usize] = arc(i, k);
-            }
+    /// Costs of edges as gains and links.
+    fn fill_cut(&mut self) {
+        self.cut.reset(self.nodes.len());
+        for edge in self.edges.iter().filter(|edge| edge.is_link()) {
+            self.cut.link(edge.first, edge.cost);
         }
-        for node in &mut self.nodes {
-            for k in 0..3 {
-                let edge = &self.edges[node.edges[k] as usize];
-                let sign = node.signs[k];
-                node.gain -= if node.arcs[k].to != NONE {
-                    0
-                } else if edge.users > 1 && edge.counter == -sign {
-                    // What the others do decides between -1 and +1.
-                    0
-                } else {
-                    edge.cost * ((edge.counter + sign).abs() - edge.counter.abs())
-                };
-            }
-        }
-    }
-
-    /// One blocking flow from nodes with gain to nodes with loss; false if there is no path.
-    fn flow(&mut self) -> bool {
-        self.queue.clear();
-        self.level.clear();
-        self.level.resize(self.nodes.len(), UNREACHED);
         for (i, node) in (0u32..).zip(&self.nodes) {
-            if node.gain > 0 {
-                self.level[i as usize] = 0;
-                self.queue.push(i);
-            }
-        }
-        let sources = self.queue.len();
-        let mut at = 0;
-        let mut last = UNREACHED;
-        while at < self.queue.len() {
-            let i = self.queue[at] as usize;
-            at += 1;
-            if self.level[i] >= last {
-                break;
-            }
-            for arc in self.nodes[i].arcs {
-                if arc.room > 0 && self.level[arc.to as usize] == UNREACHED {
-                    self.level[arc.to as usize] = self.level[i] + 1;
-                    self.queue.push(arc.to);
-                    if self.nodes[arc.to as usize].gain < 0 {
-                        last = last.min(self.level[i] + 1);
-                    }
+            for (e, sign) in node.edges.into_iter().zip(node.signs) {
+                let edge = &self.edges[e as usize];
+                if !edge.is_link() && !edge.is_open(sign) {
+                    let change = (edge.counter + sign).abs() - edge.counter.abs();
+                    self.cut.add_gain(i, -edge.cost * change);
                 }
-            }
-        }
-        if last == UNREACHED {
-            return false;
-        }
-        self.next_arc.clear();
-        self.next_arc.resize(self.nodes.len(), 0);
-        for source in 0..sources {
-            self.push_from(self.queue[source]);
-        }
-        true
-    }
-
-    fn push_from(&mut self, source: u32) {
-        self.path.clear();
-        let mut at = source as usize;
-        while self.nodes[source as usize].gain > 0 {
-            if self.nodes[at].gain < 0 {
-                let mut amount = self.nodes[source as usize].gain.min(-self.nodes[at].gain);
-                for &(i, k) in &self.path {
-                    amount = amount.min(self.nodes[i as usize].arcs[k as usize].room);
-                }
-                self.nodes[source as usize].gain -= amount;
-                self.nodes[at].gain += amount;
-                for &(i, k) in &self.path {
-                    let arc = &mut self.nodes[i as usize].arcs[k as usize];
-                    arc.room -= amount;
-                    let (to, back) = (arc.to, arc.back);
-                    self.nodes[to as usize].arcs[back as usize].room += amount;
-                }
-                self.path.clear();
-                at = source as usize;
-                continue;
-            }
-            let k = self.next_arc[at];
-            if k == 3 {
-                let Some((before, _)) = self.path.pop() else {
-                    return;
-                };
-                at = before as usize;
-                self.next_arc[at] += 1;
-                continue;
-            }
-            let arc = self.nodes[at].arcs[k as usize];
-            if arc.room > 0 && self.level[arc.to as usize] == self.level[at] + 1 {
-                self.path.push((at as u32, k));
-                at = arc.to as usize;
-            } else {
-                self.next_arc[at] += 1;
-            }
-        }
-    }
-
-    /// Casters that nodes with gain left can still reach stay.
-    fn take_cut(&mut self) {
-        self.queue.clear();
-        for i in 0..self.nodes.len() {
-            if self.nodes[i].gain > 0 {
-                self.nodes[i].stays = true;
-                self.queue.push(i as u32);
-            }
-        }
-        while let Some(i) = self.queue.pop() {
-            for arc in self.nodes[i as usize].arcs {
-                if arc.room > 0 && !self.nodes[arc.to as usize].stays {
-                    self.nodes[arc.to as usize].stays = true;
-                    self.queue.push(arc.to);
-                }
-            }
-        }
-        for node in self.nodes.iter().filter(|node| node.stays) {
-            for k in 0..3 {
-                self.edges[node.edges[k] as usize].counter += node.signs[k];
             }
         }
     }
 
     /// Changes single casters as long as that lowers the sum.
-    fn flip(&mut self) {
-        for _ in 0..4 {
+    fn improve(&mut self) {
+        for _ in 0..PASSES {
             let mut changed = false;
             for node in &mut self.nodes {
-                let way = if node.stays { -1 } else { 1 };
-                let change: i32 = (0..3)
-                    .map(|k| {
-                        let edge = &self.edges[node.edges[k] as usize];
-                        let after = edge.counter + way * node.signs[k];
-                        edge.cost * (after.abs() - edge.counter.abs())
+                let way = node.way();
+                let sides = node.edges.into_iter().zip(node.signs);
+                let change: i32 = sides
+                    .map(|(e, sign)| {
+                        let edge = &self.edges[e as usize];
+                        edge.cost * ((edge.counter + way * sign).abs() - edge.counter.abs())
                     })
                     .sum();
                 if change < 0 {
+                    node.change(&mut self.edges);
                     changed = true;
-                    node.stays = !node.stays;
-                    for k in 0..3 {
-                        self.edges[node.edges[k] as usize].counter += way * node.signs[k];
-                    }
                 }
             }
             if !changed {
                 break;
             }
+        }
+    }
+}
+
+impl HiddenEdge {
+    /// Cost of a counter.
+    fn cost_at(&self, counter: i32) -> i64 {
+        i64::from(self.cost) * i64::from(counter.abs())
+    }
+
+    /// Whether it joins two hidden casters wound alike and nothing else counts on it.
+    fn is_link(&self) -> bool {
+        self.users == 2 && self.hidden == 0 && self.counter == 0
+    }
+
+    /// Whether what a caster of that sign changes depends on other hidden ones.
+    fn is_open(&self, sign: i32) -> bool {
+        let alone = self.users == 1 || self.users == 2 && self.hidden == 0;
+        !alone && self.counter == -sign
+    }
+}
+
+impl Node {
+    /// +1 if it would come, -1 if it would go.
+    fn way(&self) -> i32 {
+        if self.stays { -1 } else { 1 }
+    }
+
+    /// Comes or goes.
+    fn change(&mut self, edges: &mut [HiddenEdge]) {
+        let way = self.way();
+        self.stays = !self.stays;
+        for (e, sign) in self.edges.into_iter().zip(self.signs) {
+            edges[e as usize].counter += way * sign;
         }
     }
 }

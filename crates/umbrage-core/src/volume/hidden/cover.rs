@@ -18,6 +18,9 @@ use super::sight::{Caster, Sight};
 /// Thickness of a remainder that counts as covered, relative to its distance from the light.
 const SLIVER: f64 = 1e-12;
 
+/// Casters looked at for each cut.
+const CHOICES: usize = 4;
+
 /// Cuts tried on one caster before it counts as seen.
 const CUTS: usize = 64;
 
@@ -233,10 +236,8 @@ impl Scene<'_> {
     fn best_nearer(&self, piece: &[Point], own: &Caster) -> Option<(u32, usize)> {
         let at = middle(piece);
         let mut best: Option<(u32, usize)> = None;
-        for (number, other) in self.candidates(&at) {
-            if !self.hides(other, &at) {
-                continue;
-            }
+        let nearer = self.candidates(&at).filter(|(_, c)| self.hides(c, &at));
+        for (number, other) in nearer.take(CHOICES) {
             let covered = piece.iter().filter(|p| self.covers(other, own, p)).count();
             if covered == piece.len() {
                 return Some((number, covered));

@@ -17,7 +17,7 @@ pub(super) struct Grid {
     /// Of face coordinates: to cells.
     low: DVec2,
     scale: DVec2,
-    /// From cells to 65536ths.
+    /// From cells to steps.
     fine: f64,
     /// First entry of each cell; one more at the end.
     first: Vec<u32>,
@@ -33,19 +33,34 @@ pub(super) struct Entry {
     /// It is nowhere closer than this to the light; see [`Sight::closest`].
     pub(super) closest: f32,
     pub(super) number: u32,
-    /// Its box in the face, in 65536ths: low x, low y, high x, high y.
-    bounds: [u16; 4],
+    /// Its box in the face; see [`bounds_word`].
+    bounds: u64,
+}
+
+/// Top bit of four 16-bit lanes.
+const TOP: u64 = 0x8000_8000_8000_8000;
+/// Steps of a face that a lane counts, less one.
+const MOST: u16 = 0x7fff;
+
+/// A box in four lanes of 15 bits: high corner, and the low one counted from the far end. With
+/// their top bits set, subtracting a point packed as a box clears one unless the box holds it.
+fn bounds_word(low: [u16; 2], high: [u16; 2]) -> u64 {
+    let lanes = [high[0], high[1], MOST - low[0], MOST - low[1]];
+    lanes
+        .iter()
+        .rev()
+        .fold(0, |word, &lane| word << 16 | u64::from(lane))
 }
 
 /// Casters a cell aims at.
-const PER_CELL: f64 = 0.5;
+const PER_CELL: f64 = 1.0;
 
 impl Grid {
     /// Replaces what was there.
     pub(super) fn fill(&mut self, sight: &Sight, casters: &[Caster]) {
         self.faces = if sight.is_point() { 6 } else { 1 };
         let side = (casters.len() as f64 / (PER_CELL * f64::from(self.faces))).sqrt();
-        self.side = (side.ceil() as u32).clamp(4, if sight.is_point() { 128 } else { 2048 });
+        self.side = (side.ceil() as u32).clamp(4, if sight.is_point() { 512 } else { 2048 });
         let (mut low, mut high) = (DVec2::splat(-1.0), DVec2::splat(1.0));
         if !sight.is_point() {
             low = DVec2::INFINITY;
@@ -58,14 +73,14 @@ impl Grid {
         self.low = low;
         self.scale = f64::from(self.side) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
 
-        self.fine = 65536.0 / f64::from(self.side);
+        self.fine = f64::from(MOST) / f64::from(self.side);
         self.pairs.clear();
         self.order.clear();
         let able = (0u32..).zip(casters).filter(|(_, c)| c.size > 0.0);
         self.order.extend(able.map(|(number, caster)| Entry {
             closest: sight.closest(caster),
             number,
-            bounds: [0; 4],
+            bounds: 0,
         }));
         self.order.sort_unstable_by(|a, b| {
             b.closest
@@ -102,17 +117,16 @@ impl Grid {
     pub(super) fn along(&self, ray: DVec3) -> impl Iterator<Item = Entry> {
         let face = if self.faces == 1 { 4 } else { face_of(ray) };
         let local = to_face(face, ray);
-        let (cell, [x, y]) = self.place(local.truncate() / local.z);
+        let (cell, at) = self.place(local.truncate() / local.z);
+        let at = bounds_word(at, at);
         let face = if self.faces == 1 { 0 } else { face };
         let index = ((face * self.side + cell.y) * self.side + cell.x) as usize;
         let entries = &self.entries[self.first[index] as usize..self.first[index + 1] as usize];
-        entries.iter().copied().filter(move |entry| {
-            let [low_x, low_y, high_x, high_y] = entry.bounds;
-            (low_x <= x) & (low_y <= y) & (x <= high_x) & (y <= high_y)
-        })
+        let holds = move |entry: &&Entry| ((entry.bounds | TOP) - at) & TOP == TOP;
+        entries.iter().filter(holds).copied()
     }
 
-    /// The cell of a point of a face, and the point in 65536ths of the face.
+    /// The cell of a point of a face, and the point in steps.
     #[inline]
     fn place(&self, at: DVec2) -> (UVec2, [u16; 2]) {
         let at = (at - self.low) * self.scale;
@@ -120,7 +134,7 @@ impl Grid {
         // Casts saturate.
         (
             UVec2::new(at.x as u32, at.y as u32).min(UVec2::splat(self.side - 1)),
-            [fine.x as u16, fine.y as u16],
+            [fine.x as u16, fine.y as u16].map(|step| step.min(MOST)),
         )
     }
 
@@ -164,9 +178,9 @@ impl Grid {
             low = low.min(at);
             high = high.max(at);
         }
-        let (low, [low_x, low_y]) = self.place(low);
-        let (high, [high_x, high_y]) = self.place(high);
-        entry.bounds = [low_x, low_y, high_x, high_y];
+        let (low, low_step) = self.place(low);
+        let (high, high_step) = self.place(high);
+        entry.bounds = bounds_word(low_step, high_step);
         let few = (high.x - low.x + 1) * (high.y - low.y + 1) <= 2;
         let sides = caster.sides.map(|n| to_face(axes, n));
         let step = 1.0 / self.scale;
