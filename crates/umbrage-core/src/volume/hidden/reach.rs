@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::cover::Point;
 use crate::light::{Light, LightShape};
+use crate::volume::range::SLACK;
 
 /// Half spaces around a light's reach.
 #[derive(Clone, Debug, Default)]
@@ -31,8 +32,6 @@ const AROUND: [(f64, f64); 8] = {
         (s, -s),
     ]
 };
-/// Far above what a shader's f32 range test may be off by.
-const SLACK: f64 = 1e-5;
 
 impl ReachPlanes {
     /// Of a light, replacing what was there.
