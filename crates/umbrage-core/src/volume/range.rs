@@ -32,6 +32,28 @@ pub struct QuadReach {
     range2: f64,
     /// Axis and cosine, with slack.
     cone: Option<(DVec3, f64)>,
+    /// The light's own, for points that are clearly inside.
+    inner: Inner,
+}
+
+/// The reach without slack, in f32: where a point is inside, no rounding puts it outside the other.
+#[derive(Clone, Copy, Debug)]
+struct Inner {
+    light: Vec3,
+    range2: f32,
+    /// Axis and squared cosine; anything is inside if the cosine is negative.
+    axis: Vec3,
+    cos2: f32,
+}
+
+impl Inner {
+    #[inline]
+    fn has(&self, p: Vec3) -> bool {
+        let v = p - self.light;
+        let (along, distance2) = (v.dot(self.axis), v.length_squared());
+        distance2 <= self.range2
+            && (self.cos2 < 0.0 || along > 0.0 && along * along >= self.cos2 * distance2)
+    }
 }
 
 /// Relative to the range, and of the cosine: far above what a shader's f32 test may be off by, with
@@ -53,7 +75,20 @@ impl QuadReach {
     /// Of a light.
     pub fn new(light: &Light) -> Self {
         let range = f64::from(light.range) * (1.0 + SLACK);
+        let (axis, cos2) = match light.shape {
+            LightShape::Spot {
+                direction,
+                cos_outer,
+            } if f64::from(cos_outer) > SLACK => (direction, cos_outer * cos_outer),
+            _ => (Vec3::ZERO, -1.0),
+        };
         Self {
+            inner: Inner {
+                light: light.position,
+                range2: light.range * light.range,
+                axis,
+                cos2,
+            },
             light: light.position.as_dvec3(),
             range2: if light.is_directional() {
                 f64::INFINITY
@@ -76,6 +111,9 @@ impl QuadReach {
     /// Where the quad of an edge can matter.
     pub fn of_edge(&self, ends: [Vec3; 2]) -> QuadRange {
         if self.range2 == f64::INFINITY && self.cone.is_none() {
+            return QuadRange::Reach;
+        }
+        if self.inner.has(ends[0]) || self.inner.has(ends[1]) {
             return QuadRange::Reach;
         }
         let [a, b] = ends.map(|p| p.as_dvec3() - self.light);
