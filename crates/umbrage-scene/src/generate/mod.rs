@@ -99,11 +99,35 @@ fn values<const N: usize>(
         let Some(i) = keys.iter().position(|k| k.name == name) else {
             return Err(fail(format!("unknown key {name:?}")));
         };
-        let value = text
-            .parse()
-            .ok()
-            .filter(|v| (keys[i].low..=keys[i].high).contains(v));
+        let value = whole_number(text).filter(|v| (keys[i].low..=keys[i].high).contains(v));
         values[i] = value.ok_or_else(|| fail(format!("{name}={text:?} is out of bounds")))?;
     }
     Ok(values)
+}
+
+/// Digits, or a whole number written with an exponent, as in 1e6.
+fn whole_number(text: &str) -> Option<u64> {
+    let with_exponent = || {
+        let value: f64 = text.parse().ok()?;
+        (value.fract() == 0.0 && (0.0..1e15).contains(&value)).then_some(value as u64)
+    };
+    text.parse().ok().or_else(with_exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::whole_number;
+
+    #[test]
+    fn numbers_may_have_an_exponent_but_no_fraction() {
+        for (text, value) in [("40", 40), ("1e6", 1_000_000), ("2.5e3", 2500), ("0", 0)] {
+            assert_eq!(whole_number(text), Some(value), "{text}");
+        }
+        for text in [
+            "", "1.5", "-1", "1e-3", "nan", "inf", "1e300", "1e6 ", "six",
+        ] {
+            assert_eq!(whole_number(text), None, "{text}");
+        }
+        assert_eq!(whole_number("18446744073709551615"), Some(u64::MAX));
+    }
 }
