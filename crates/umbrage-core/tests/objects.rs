@@ -314,3 +314,77 @@ fn an_object_may_stand_in_an_empty_world_or_be_empty() {
     assert!(!volumes.quads_of(0).is_empty());
     world.remove(empty).unwrap();
 }
+
+/// As an editor does: what was inserted is gone with the copy of the world it was inserted in.
+#[test]
+fn a_world_taken_back_takes_its_volumes_back() {
+    let mut world = World::build(&strewn_soup(1, 100, 0.3)).unwrap();
+    let lights = lights(&mut Random(3), 30);
+    let (mut builder, mut volumes) = (builder(), Volumes::default());
+    builder.build(&world, &lights, |_| true, &mut volumes);
+    let saved = world.clone();
+    let id = world
+        .insert(&strewn_soup(2, 90, 0.2), &Pose::at(DVec3::ZERO))
+        .unwrap();
+    let bounds = world.object(id).unwrap().bounds;
+    let near = |light: &&Light| Reach::new(light).touches_box(bounds);
+    let touched = lights.iter().filter(near).count();
+    assert!(touched > 0 && touched < lights.len());
+    for world in [&world, &saved, &world, &saved] {
+        let built = builder.build(world, &lights, |_| true, &mut volumes);
+        assert_eq!(built, touched);
+        let anew = build(world, &lights);
+        for i in 0..lights.len() {
+            assert_eq!(volumes.quads_of(i), anew.quads_of(i));
+        }
+    }
+}
+
+/// Hidden casters are looked for once lights stand still, within the budget, and moving objects do
+/// not lift it.
+#[test]
+fn lights_settle_within_the_budget() {
+    let mut world = World::build(&strewn_soup(4, 900, 0.5)).unwrap();
+    let lights: Vec<Light> = (0..12)
+        .map(|i| point_light(Vec3::splat(0.02 * i as f32), 2.0))
+        .collect();
+    let id = world
+        .insert(&strewn_soup(2, 20, 0.1), &Pose::at(DVec3::ZERO))
+        .unwrap();
+    let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
+    builder.build(&world, &lights, |_| true, &mut volumes);
+    let plain: Vec<u32> = volumes.lights.iter().map(|l| l.facing_triangles).collect();
+    let settled = |volumes: &Volumes| {
+        let lights = volumes.lights.iter().zip(&plain);
+        lights
+            .filter(|(l, plain)| l.facing_triangles < **plain)
+            .count()
+    };
+    // Room for three of them in each build.
+    builder.hidden_budget = 3 * plain.iter().max().unwrap() + 3;
+    let mut before = 0;
+    for step in 1..=4 {
+        let pose = Pose::at(DVec3::new(0.0, 0.0, 1e-3 * f64::from(step)));
+        world.pose(id, &pose).unwrap();
+        builder.build(&world, &lights, |_| true, &mut volumes);
+        let now = settled(&volumes);
+        assert!((before + 1..=before + 4).contains(&now), "{before} {now}");
+        before = now;
+        volumes.check_closed(&world).unwrap();
+    }
+    builder.settle(&world, &lights, |_| true, &mut volumes);
+    assert_eq!(settled(&volumes), lights.len());
+    assert_eq!(builder.settle(&world, &lights, |_| true, &mut volumes), 0);
+    let mut at_once = Volumes::default();
+    VolumeBuilder::default().settle(&world, &lights, |_| true, &mut at_once);
+    for i in 0..lights.len() {
+        assert_eq!(volumes.quads_of(i), at_once.quads_of(i));
+    }
+
+    // One beyond the budget waits for settle.
+    builder.hidden_budget = plain.iter().min().unwrap() - 30;
+    let mut small = Volumes::default();
+    assert_eq!(builder.build(&world, &lights, |_| true, &mut small), 12);
+    assert_eq!(builder.build(&world, &lights, |_| true, &mut small), 0);
+    assert_eq!(settled(&small), 0);
+}

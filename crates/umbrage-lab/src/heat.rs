@@ -2,11 +2,11 @@
 
 use half::f16;
 use umbrage::frame::{FramePlan, LightPath};
-use umbrage::{View, VolumeColor};
+use umbrage::{Cull, Culls, View, VolumeColor};
 
 use crate::gbuffer::texture;
 use crate::gpu::GpuError;
-use crate::lab::{Lab, light_pass};
+use crate::lab::{Lab, Method, light_pass};
 use crate::light_pass::{HDR, LightDraw};
 use crate::readback::read_texture;
 use crate::stage::{Stage, StageLight};
@@ -25,8 +25,27 @@ pub enum Heat {
 }
 
 impl Lab {
-    /// Draws what `volumes` and `plan` hold as counts, one f32 a pixel.
+    /// Draws a view's volumes and lights as counts, one f32 a pixel. Fragments are those that a frame
+    /// with the lab's culls has; layers are counted with every caster there.
     pub fn heat(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        heat: Heat,
+    ) -> Result<Vec<f32>, GpuError> {
+        let culls = self.culls;
+        if heat == Heat::Layers {
+            self.culls = Culls::NONE.with(Cull::View);
+        }
+        self.prepare(stage, lights, view, method);
+        let counts = self.prepared_heat(stage, lights, view, heat);
+        self.culls = culls;
+        counts
+    }
+
+    fn prepared_heat(
         &self,
         stage: &Stage,
         lights: &[StageLight],

@@ -191,6 +191,7 @@ impl Lab {
     /// `volumes` and `plan` then; a test may change them in between.
     pub fn prepare(&mut self, stage: &Stage, lights: &[StageLight], view: &View, method: Method) {
         let start = Instant::now();
+        self.calls.clear();
         self.lights = lights.iter().map(|l| l.light).collect();
         if method == Method::None {
             self.volumes = Volumes::empty(self.lights.len());

@@ -104,9 +104,11 @@ impl Growing {
         if self.copy == bytes {
             return Ok(Written::default());
         }
+        let whole = std::iter::once(0..bytes.len());
+        let written = self.write_changed(device, queue, bytes, whole)?;
         self.copy.clear();
         self.copy.extend_from_slice(bytes);
-        self.write_changed(device, queue, bytes, std::iter::once(0..bytes.len()))
+        Ok(written)
     }
 }
 

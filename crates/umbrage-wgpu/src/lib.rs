@@ -2,7 +2,8 @@
 //!
 //! The host owns device, queue, encoder, depth buffer and the light shading. Three phases:
 //! *create* ([`ShadowRenderer::new`]), *prepare* ([`ShadowRenderer::upload_world`],
-//! [`ShadowRenderer::prepare`]) and *record* ([`ShadowRenderer::record`]).
+//! [`ShadowRenderer::prepare`]) and *record* ([`ShadowRenderer::find_receivers`] after the depth pass,
+//! [`ShadowRenderer::record`] in the light pass).
 //!
 //! Requirements on the host's frame:
 //! - its depth pass computes clip positions with [`CLIP_WGSL`] from the world's own positions,

@@ -42,7 +42,8 @@ pub enum VolumeColor {
     /// One a fragment that passes the depth test: overdraw.
     Fragments,
     /// One a front face and minus one a back face that passes the depth test: on the z-pass path,
-    /// with the eye count added, the casters between the surface and the light.
+    /// with the eye count added, the casters between the surface and the light, if no cull left any
+    /// out.
     Layers,
 }
 
@@ -215,14 +216,15 @@ impl ShadowRenderer {
         queue: &Queue,
         world: &World,
     ) -> Result<bool, RenderError> {
+        let bind_groups = self.bind_groups.take();
         let written = self.world.update(device, queue, world)?;
-        if written.replaced {
-            self.bind_groups = None;
-        }
+        self.bind_groups = bind_groups.filter(|_| !written.replaced);
         Ok(written.replaced)
     }
 
-    /// Uploads what this frame's plan draws and the GPU does not have yet.
+    /// Uploads what this frame's plan draws and the GPU does not have yet. One call a submission:
+    /// what the queue is given here arrives before everything recorded in it, so two views need two
+    /// submissions, or two renderers.
     pub fn prepare(
         &mut self,
         device: &Device,
@@ -236,7 +238,7 @@ impl ShadowRenderer {
         let view = ViewUniform::from(frame.view);
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.view_size = frame.view.size;
-        self.light_count = frame.lights.len() as u32;
+        self.light_count = frame.lights.len().min(frame.plan.lights.len()) as u32;
         let quads = &frame.volumes.quads;
         let item = size_of_val(&quads[..])
             .checked_div(quads.len())
@@ -244,28 +246,28 @@ impl ShadowRenderer {
         let changed = frame.volumes.quads_since(self.quads_version);
         let changed = changed.map(|r| r.start * item..r.end * item);
         let bytes = bytemuck::cast_slice(quads);
+        self.found = Found::No;
+        // Made again below unless no buffer is replaced; an error leaves none behind.
+        let bind_groups = self.bind_groups.take();
         let mut volumes = self.quads.write_changed(device, queue, bytes, changed)?;
         self.quads_version = frame.volumes.quads_version();
         let caps = bytemuck::cast_slice(&frame.plan.caps);
         volumes += self.caps.write(device, queue, caps)?;
         let points = bytemuck::cast_slice(&homogeneous);
         let mut others = self.lights.write(device, queue, points)?;
-        self.found = Found::No;
         let asked = frame.culls.has(Cull::Receivers) || frame.culls.has(Cull::Quads);
         if let Some(receivers) = self.receivers.as_mut().filter(|_| asked) {
             others += receivers.prepare(device, queue, frame)?;
             self.found = Found::Planned;
         }
-        let rows = match self.found {
-            Found::No => 0,
-            _ => tile_rows(frame.view),
-        };
-        let spans = 4 + 4 * u64::from(rows) * u64::from(self.light_count);
+        let spans = 4 + 4 * u64::from(tile_rows(frame.view)) * u64::from(self.light_count);
         if self.spans.reserve(device, spans)? || self.light_bind_group.is_none() {
             self.light_bind_group = Some(self.bind_light(device));
         }
-        queue.write_buffer(&self.spans.buffer, 0, bytemuck::bytes_of(&rows));
-        if volumes.replaced || others.replaced || self.bind_groups.is_none() {
+        // Over the whole view, until receivers are found.
+        queue.write_buffer(&self.spans.buffer, 0, bytemuck::bytes_of(&0u32));
+        self.bind_groups = bind_groups.filter(|_| !(volumes.replaced || others.replaced));
+        if self.bind_groups.is_none() {
             let kept = self.receivers.as_ref().map(|r| &r.kept_quads);
             let quads = [&self.quads, kept.unwrap_or(&self.quads)];
             self.bind_groups = Some(quads.map(|quads| self.bind(device, &quads.buffer)));
@@ -314,7 +316,9 @@ impl ShadowRenderer {
     /// no `INDIRECT_FIRST_INSTANCE`, with more than one sample a pixel, or if the frame's culls
     /// want neither.
     ///
-    /// `depth` is a depth-only view of the texture, of the size of the view that was prepared.
+    /// `depth` is a depth-only view of the texture, which has `TEXTURE_BINDING` among its usages and
+    /// the size of the view that was prepared. What is not in it (glass, fog) counts for nothing: a
+    /// light that reaches only such is not drawn.
     pub fn find_receivers(
         &mut self,
         device: &Device,
@@ -399,8 +403,8 @@ impl ShadowRenderer {
 
     /// The draw of light number `light` for the host's own pipeline and bind groups; the instance
     /// index is the light's number, and the vertex shader places its vertices with
-    /// `umbrage_light_corner` of [`light_wgsl`](crate::light_wgsl). Draws nothing if the light
-    /// reaches no visible surface.
+    /// `umbrage_light_corner` of [`light_wgsl`](crate::light_wgsl), as a list of counter-clockwise
+    /// triangles. Draws nothing if the light reaches no visible surface.
     pub fn draw_light(&self, pass: &mut RenderPass<'_>, light: usize) {
         match self.calls() {
             Some(calls) => {
@@ -463,7 +467,7 @@ fn bind_group_layout(device: &Device) -> BindGroupLayout {
 }
 
 fn light_layout(device: &Device) -> BindGroupLayout {
-    uniform_and_storage(device, "umbrage light", ShaderStages::VERTEX_FRAGMENT, 1)
+    uniform_and_storage(device, "umbrage light", ShaderStages::VERTEX, 1)
 }
 
 /// A uniform buffer, then read-only storage buffers.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use umbrage_core::world::World;
+use umbrage_core::world::{Extent, World};
 use wgpu::{Buffer, BufferUsages, Device, Queue};
 
 use crate::RenderError;
@@ -16,11 +16,25 @@ pub(crate) struct WorldBuffers {
     edges: Growing,
     /// u32 triples.
     triangles: Growing,
-    /// Of the world as it was last uploaded.
-    fixed_stamp: u64,
+    seen: Seen,
+}
+
+/// The world as it was last uploaded.
+#[derive(Debug, Default)]
+struct Seen {
+    /// 0 if none was.
     stamp: u64,
-    /// When each object was placed, and had last changed.
-    objects: Vec<(u64, u64)>,
+    fixed: u64,
+    /// Of positions, edges and triangles.
+    lengths: [u32; 3],
+    objects: Vec<SeenObject>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct SeenObject {
+    placed: u64,
+    changed: u64,
+    room: Extent,
 }
 
 impl WorldBuffers {
@@ -30,9 +44,7 @@ impl WorldBuffers {
             positions: buffer("umbrage positions"),
             edges: buffer("umbrage edges"),
             triangles: buffer("umbrage triangles"),
-            fixed_stamp: 0,
-            stamp: 0,
-            objects: Vec::new(),
+            seen: Seen::default(),
         }
     }
 
@@ -43,7 +55,7 @@ impl WorldBuffers {
 
     /// Whether a world was uploaded.
     pub(crate) fn is_filled(&self) -> bool {
-        self.stamp != 0
+        self.seen.stamp != 0
     }
 
     /// Brings the buffers up to date with the world.
@@ -53,27 +65,36 @@ impl WorldBuffers {
         queue: &Queue,
         world: &World,
     ) -> Result<Written, RenderError> {
-        if self.stamp == world.stamp {
+        if self.seen.stamp == world.stamp {
             return Ok(Written::default());
         }
-        let (mut positions, mut edges, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
-        if self.fixed_stamp != world.fixed_stamp {
-            self.objects.clear();
-            positions.push(0..world.positions.len() as u32);
-            edges.push(0..world.edges.vertices.len() as u32);
-            triangles.push(0..world.triangles.len() as u32);
+        let lengths = [
+            world.positions.len() as u32,
+            world.edges.vertices.len() as u32,
+            world.triangles.len() as u32,
+        ];
+        // Until all is written, the buffers hold no world.
+        let mut seen = std::mem::take(&mut self.seen);
+        if seen.fixed != world.fixed_stamp {
+            seen = Seen::default();
         }
-        self.objects.resize(world.objects.len(), (0, 0));
-        for (seen, object) in self.objects.iter_mut().zip(&world.objects) {
-            if seen.1 != object.changed {
+        let grown = |i: usize| seen.lengths[i].min(lengths[i])..lengths[i];
+        let [mut positions, mut edges, mut triangles] = [0, 1, 2].map(|i| Vec::from([grown(i)]));
+        seen.objects.resize(world.objects.len(), Default::default());
+        for (seen, object) in seen.objects.iter_mut().zip(&world.objects) {
+            if seen.changed != object.changed {
                 positions.push(object.extent.vertices.clone());
             }
             // Topology changes when an object comes or goes: one that is gone leaves padding.
-            if seen.0 != object.placed {
+            if seen.placed != object.placed || seen.room != object.room {
                 edges.push(object.extent.edges.clone());
                 triangles.push(object.room.triangles.clone());
             }
-            *seen = (object.placed, object.changed);
+            *seen = SeenObject {
+                placed: object.placed,
+                changed: object.changed,
+                room: object.room.clone(),
+            };
         }
         let mut written = Written::default();
         let bytes = bytemuck::cast_slice(&world.positions);
@@ -88,7 +109,12 @@ impl WorldBuffers {
         written += self
             .triangles
             .write_changed(device, queue, bytes, in_bytes(&triangles, 12))?;
-        (self.fixed_stamp, self.stamp) = (world.fixed_stamp, world.stamp);
+        self.seen = Seen {
+            stamp: world.stamp,
+            fixed: world.fixed_stamp,
+            lengths,
+            objects: seen.objects,
+        };
         Ok(written)
     }
 }

@@ -45,7 +45,7 @@ fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> 
         let rgb8 = match args.heatmap {
             None => lit.to_rgb8(),
             Some(heatmap) => {
-                let counts = lab.heat(stage, lights, view, heatmap.into())?;
+                let counts = lab.heat(stage, lights, view, method, heatmap.into())?;
                 false_colours(&counts)
             }
         };

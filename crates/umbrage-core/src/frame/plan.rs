@@ -75,6 +75,8 @@ pub enum SkipReason {
     OutsideView,
     /// No triangle is within its range.
     NothingInRange,
+    /// Nobody wanted its volume built.
+    NotBuilt,
     /// No visible surface is within its range: found out on the GPU, from the depth buffer.
     NoVisibleReceiver,
 }
@@ -97,6 +99,7 @@ impl LightPath {
             LightPath::ZFail(ZFailReason::Asked) => "asked for",
             LightPath::Skipped(SkipReason::OutsideView) => "its range is outside the view",
             LightPath::Skipped(SkipReason::NothingInRange) => "no triangle is in its range",
+            LightPath::Skipped(SkipReason::NotBuilt) => "its volume was not built",
             LightPath::Skipped(SkipReason::NoVisibleReceiver) => {
                 "no visible surface is in its range"
             }
@@ -176,6 +179,8 @@ impl FramePlan {
             let scissor = light_rect(view, light);
             let path = if scissor.is_empty() && options.culls.has(Cull::View) {
                 LightPath::Skipped(SkipReason::OutsideView)
+            } else if volume.stamp == 0 {
+                LightPath::Skipped(SkipReason::NotBuilt)
             } else if volume.subset_triangles == 0 {
                 LightPath::Skipped(SkipReason::NothingInRange)
             } else if options.path == PathRule::ZFailAlways {

@@ -37,7 +37,8 @@ pub struct LightVolume {
     pub in_range: RangePrefix,
     /// Its chain, in [`Volumes::chains`]; objects' triangles come last.
     pub chain: Range<u32>,
-    /// When it was built: the same stamp means the same volume.
+    /// When it was built, 0 if it was not: the same stamp under the same light's number means the
+    /// same volume.
     pub stamp: u64,
     /// Whether the last build kept it.
     pub cached: bool,
@@ -71,9 +72,7 @@ struct Key {
     fixed: Fixed,
     /// What objects cast is right.
     objects: bool,
-    /// Length of the fixed triangles' part of its chain, and of their subset.
-    fixed_chain: u32,
-    fixed_subset: u32,
+    kept: Kept,
     quads: Block,
     chain: Block,
 }
@@ -88,6 +87,17 @@ enum Fixed {
     Plain,
     /// It is right, and final.
     Settled,
+}
+
+/// The fixed triangles' part of a light.
+#[derive(Clone, Copy, Debug, Default)]
+struct Kept {
+    /// Length of its chain, in clusters.
+    chain: u32,
+    /// Triangles in that.
+    casters: u32,
+    /// Triangles in the subset.
+    subset: u32,
 }
 
 /// One light to build.
@@ -133,8 +143,8 @@ struct Scratch {
 #[derive(Debug, Default)]
 struct Built {
     lights: Vec<LightVolume>,
-    /// Length of the fixed part of each light's chain, and of the fixed subset.
-    fixed: Vec<(u32, u32)>,
+    /// Of each light.
+    kept: Vec<Kept>,
     quads: Vec<Quad>,
     chains: Vec<Chain>,
 }
@@ -167,7 +177,7 @@ impl VolumeBuilder {
         &mut self,
         world: &World,
         lights: &[Light],
-        wanted: impl Fn(&Light) -> bool + Sync,
+        wanted: impl Fn(&Light) -> bool,
         volumes: &mut Volumes,
     ) -> usize {
         volumes.forget_changes(world, lights, self.culls);
@@ -182,7 +192,7 @@ impl VolumeBuilder {
         &mut self,
         world: &World,
         lights: &[Light],
-        wanted: impl Fn(&Light) -> bool + Sync,
+        wanted: impl Fn(&Light) -> bool,
         volumes: &mut Volumes,
     ) -> usize {
         volumes.forget_changes(world, lights, self.culls);
@@ -240,7 +250,7 @@ impl Key {
 impl Built {
     fn clear(&mut self) {
         self.lights.clear();
-        self.fixed.clear();
+        self.kept.clear();
         self.quads.clear();
         self.chains.clear();
     }
@@ -319,13 +329,13 @@ impl Volumes {
         }
     }
 
-    /// The chain of a light's fixed triangles and the length of their subset, if still right.
+    /// The chain of a light's fixed triangles and the size of their subset, if still right.
     fn kept_fixed(&self, number: usize) -> Option<(&[Chain], u32)> {
         let key = &self.keys[number];
         let first = key.chain.first as usize;
         (key.fixed != Fixed::Stale).then(|| {
-            let chain = &self.chains[first..first + key.fixed_chain as usize];
-            (chain, key.fixed_subset)
+            let chain = &self.chains[first..first + key.kept.chain as usize];
+            (chain, key.kept.subset)
         })
     }
 
@@ -340,8 +350,7 @@ impl Volumes {
         let mut left = budget;
         let mut jobs = Vec::new();
         for (number, (key, light)) in self.keys.iter().zip(lights).enumerate() {
-            let casters = self.lights[number].facing_triangles;
-            let after = left.map(|left| left.checked_sub(casters));
+            let after = left.map(|left| left.checked_sub(key.kept.casters));
             let hide = match key.fixed {
                 Fixed::Settled => false,
                 Fixed::Plain => after != Some(None),
@@ -371,7 +380,7 @@ impl Volumes {
             .put(&mut self.quads, &mut key.quads, quads, stamp);
         self.chain_store
             .put(&mut self.chains, &mut key.chain, chain, stamp);
-        (key.fixed_chain, key.fixed_subset) = built.fixed[i];
+        key.kept = built.kept[i];
         (key.light, key.objects) = (Some(*light), true);
         key.fixed = match job.hide || !self.culls.has(Cull::Hidden) || key.fixed == Fixed::Settled {
             true => Fixed::Settled,
@@ -401,6 +410,9 @@ impl Volumes {
     }
 }
 
+/// The box of what is not there.
+const NOWHERE: [glam::Vec3; 2] = [glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY];
+
 impl Seen {
     /// Takes in the world as it is; gives the boxes of what moved, before and after.
     fn update(&mut self, world: &World) -> Vec<[glam::Vec3; 2]> {
@@ -408,7 +420,10 @@ impl Seen {
         if self.stamp == world.stamp {
             return moved;
         }
-        self.objects.resize(world.objects.len(), Default::default());
+        // A world of fewer objects than the last, as of an undo, has lost those.
+        let common = world.objects.len().min(self.objects.len());
+        moved.extend(self.objects.drain(common..).map(|(_, bounds)| bounds));
+        self.objects.resize(world.objects.len(), (0, NOWHERE));
         for (seen, object) in self.objects.iter_mut().zip(&world.objects) {
             if seen.0 != object.changed {
                 moved.extend([seen.1, object.bounds]);
@@ -418,6 +433,13 @@ impl Seen {
         (self.stamp, self.fixed) = (world.stamp, world.fixed_stamp);
         moved
     }
+}
+
+/// Chains longer than this leave no scratch behind.
+const MANY_CLUSTERS: usize = 1 << 11;
+
+fn casters(chain: &[Chain]) -> u32 {
+    chain.iter().map(Chain::len).sum::<usize>() as u32
 }
 
 fn build_one(
@@ -444,9 +466,16 @@ fn build_one(
     };
     if hide {
         drop_hidden(world, light, &mut scratch.chain, &mut scratch.hidden);
+        if scratch.chain.len() > MANY_CLUSTERS {
+            // A sun over a large world needs a hundred megabytes, once.
+            scratch.hidden = HiddenScratch::default();
+        }
     }
-    out.fixed
-        .push((scratch.chain.len() as u32, subset_triangles));
+    out.kept.push(Kept {
+        chain: scratch.chain.len() as u32,
+        casters: casters(&scratch.chain),
+        subset: subset_triangles,
+    });
     if !world.objects.is_empty() {
         query(world, Layer::Objects, light, &mut scratch.subset);
         facing(world, light, &scratch.subset, &mut scratch.chain);
@@ -468,7 +497,7 @@ fn build_one(
     }
     out.lights.push(LightVolume {
         subset_triangles,
-        facing_triangles: chain.iter().map(Chain::len).sum::<usize>() as u32,
+        facing_triangles: casters(chain),
         quads: first_quad as u32..out.quads.len() as u32,
         in_range,
         chain: first_chain as u32..out.chains.len() as u32,

@@ -202,7 +202,11 @@ impl RangePrefix {
             LightShape::Spot {
                 direction,
                 cos_outer,
-            } if v.dot(direction.as_dvec3()) < f64::from(cos_outer) * v.length() => self.range,
+            } if v.dot(direction.as_dvec3().normalize_or_zero())
+                < f64::from(cos_outer) * v.length() =>
+            {
+                self.range
+            }
             _ => self.reach,
         }
     }

@@ -132,7 +132,7 @@ pub struct BuildTimes {
 /// removed. All arrays hold the fixed part first, then the objects.
 #[derive(Clone, Debug, Default)]
 pub struct World {
-    /// Distinct positions, numbered by first use.
+    /// Positions, distinct and numbered by first use in the fixed part and in each object.
     pub positions: Array<Vec3>,
     /// Three vertices a triangle, as wound in the mesh, in BVH leaf order.
     pub triangles: Array<[u32; 3]>,

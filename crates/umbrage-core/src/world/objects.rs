@@ -93,10 +93,19 @@ const EMPTY: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 const PADDING: [u32; 3] = [0; 3];
 
 impl World {
-    /// Adds an object with positions in its own space.
+    /// Adds an object with positions in its own space. Its edges are its own: they cancel with none
+    /// of the world's.
     pub fn insert(&mut self, mesh: &Mesh, pose: &Pose) -> Result<ObjectId, ObjectError> {
         let part = World::build(mesh)?;
         check(&part.positions, pose)?;
+        // Padding to whole clusters included.
+        let triangles = self.triangles.len() + part.triangles.len() + LANES;
+        if triangles > World::MAX_TRIANGLES {
+            return Err(ObjectError::Mesh(WorldError::TooManyTriangles {
+                triangles,
+                limit: World::MAX_TRIANGLES,
+            }));
+        }
         let slot = self.slot_for(&part);
         let placed = stamp::next();
         let object = &mut self.objects[slot];

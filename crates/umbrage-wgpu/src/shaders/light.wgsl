@@ -21,8 +21,9 @@ fn umbrage_light_corner(index: u32, light: u32) -> vec4f {
     let row = index / 6u;
     let corner = index % 6u;
     let span = umbrage_spans.span[light * umbrage_spans.rows + row];
-    let x = select(span & 0xffffu, span >> 16u, corner == 1u || corner >= 4u);
-    let y = (row + select(0u, 1u, corner == 2u || corner == 3u || corner == 5u)) * 8u;
+    // Counter-clockwise, as the triangle above.
+    let x = select(span & 0xffffu, span >> 16u, corner == 2u || corner == 3u || corner == 5u);
+    let y = (row + select(0u, 1u, corner == 1u || corner >= 4u)) * 8u;
     let ndc = vec2f(2.0, -2.0) * vec2f(f32(x), f32(y)) / vec2f(umbrage_view.width, umbrage_view.height)
         + vec2f(-1.0, 1.0);
     return vec4f(ndc, 0.0, 1.0);

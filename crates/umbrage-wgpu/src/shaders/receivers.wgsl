@@ -24,8 +24,8 @@ struct LightPlan {
     caps: vec2u,
     reversed_caps: vec2u,
     range: f32,
-    // 0 not drawn, 1 z-pass, 2 z-fail; 4 is added where the receivers are not asked, 8 where the
-    // quads are not
+    // 0 not drawn, 1 z-pass, 2 z-fail; 4 is added if the light is drawn whatever it reaches, 8 if
+    // all its quads are
     path: u32,
 }
 
@@ -58,8 +58,8 @@ const TILE: u32 = 8u;
 const FAR: f32 = 1e18;
 
 // What a depth may be off by: interpolated over a triangle that reaches to the near plane, where
-// depth is 1.
-const DEPTH_ERROR: f32 = 1.0 / 2097152.0;
+// depth is 1, and somewhat nearer.
+const DEPTH_ERROR: f32 = 1.0 / 1048576.0;
 
 fn nothing() -> Box {
     return Box(vec3f(FAR), 0u, vec3f(-FAR), 0u);
@@ -77,6 +77,10 @@ fn with_point(a: Box, p: vec3f, margin: vec3f) -> Box {
 fn surface(@builtin(global_invocation_id) id: vec3u) {
     let size = textureDimensions(depth_texture);
     let across = (size + TILE - 1u) / TILE;
+    if all(id.xy == vec2u(0u)) {
+        // From here on light draws go by spans.
+        spans[0] = across.y;
+    }
     if any(id.xy >= across) {
         return;
     }
@@ -137,7 +141,8 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     }
     workgroupBarrier();
     let box = workgroupUniformLoad(&receivers);
-    if box.some != 0u {
+    let seen = box.some != 0u || (ours.path & 4u) != 0u;
+    if seen {
         let all = path == 2u || (ours.path & 8u) != 0u;
         for (var i = ours.quads.x + lane; i < ours.quads.y; i += LANES) {
             let quad = quads[i];
@@ -148,7 +153,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     }
     workgroupBarrier();
     if lane == 0u {
-        let drawn = select(0u, 1u, box.some != 0u);
+        let drawn = select(0u, 1u, seen);
         let count = atomicLoad(&kept);
         let caps = ours.caps.y - ours.caps.x;
         let reversed = ours.reversed_caps.y - ours.reversed_caps.x;
@@ -175,18 +180,17 @@ fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box 
         var first = ours.tiles.z;
         var end = ours.tiles.x;
         for (var x = ours.tiles.x; x < ours.tiles.z; x++) {
-            var box = Box(vec3f(-FAR), 1u, vec3f(FAR), 0u);
-            if asked {
-                box = tiles[y * across.x + x];
-                if box.some != 0u && homogeneous.w != 0.0 {
-                    let aside = max(max(box.low - center, center - box.high), vec3f(0.0));
-                    box.some = select(0u, 1u, dot(aside, aside) <= range * range);
-                    box.low = max(box.low, center - range);
-                    box.high = min(box.high, center + range);
-                }
+            var box = tiles[y * across.x + x];
+            if box.some != 0u && homogeneous.w != 0.0 {
+                let aside = max(max(box.low - center, center - box.high), vec3f(0.0));
+                box.some = select(0u, 1u, dot(aside, aside) <= range * range);
+                box.low = max(box.low, center - range);
+                box.high = min(box.high, center + range);
             }
             if box.some != 0u {
                 found = joined(found, box);
+            }
+            if box.some != 0u || !asked {
                 first = min(first, x);
                 end = x + 1u;
             }
@@ -225,6 +229,9 @@ fn meets_hull(quad: u32, light: vec4f, box: Box) -> bool {
     let b = pb - view.eye;
     let away_a = pa * light.w - light.xyz;
     let away_b = pb * light.w - light.xyz;
+    if dot(away_a, away_a) == 0.0 || dot(away_b, away_b) == 0.0 {
+        return true;
+    }
 
     let low = min(box.low, vec3f(0.0));
     let high = max(box.high, vec3f(0.0));
@@ -235,8 +242,8 @@ fn meets_hull(quad: u32, light: vec4f, box: Box) -> bool {
         return false;
     }
 
-    // Where one of these is no direction (NaN) no comparison holds, and the quad stays.
-    let along = normalize(b - a);
+    // From positions as they are: relative to the eye both ends are rounded already.
+    let along = normalize(pb - pa);
     let ray_a = normalize(away_a);
     let ray_b = normalize(away_b);
     let normal = cross(along, ray_a);

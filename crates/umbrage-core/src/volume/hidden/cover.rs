@@ -82,7 +82,9 @@ impl Cover {
             ray,
             closeness: caster.plane.dot(ray),
         }));
-        scene.reach.clip(&mut self.piece, &mut self.inside);
+        scene
+            .reach
+            .clip(&mut self.piece, caster.plane, &mut self.inside);
         if self.piece.is_empty() {
             return Verdict::Hidden;
         }

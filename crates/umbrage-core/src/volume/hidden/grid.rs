@@ -82,20 +82,22 @@ impl Grid {
             number,
             bounds: 0,
         }));
+        let cells = (self.faces * self.side * self.side) as usize;
+        self.first.clear();
+        self.first.resize(cells + 1, 0);
         self.order.sort_unstable_by(|a, b| {
             b.closest
                 .total_cmp(&a.closest)
                 .then(a.number.cmp(&b.number))
         });
+        let most = MOST_CELLS * casters.len() + (1 << 16);
         for i in 0..self.order.len() {
+            // Casters come nearest first: those that find no room hide less than the others.
+            if self.pairs.len() > most {
+                break;
+            }
             let entry = self.order[i];
             self.insert(entry, &casters[entry.number as usize]);
-        }
-        let cells = (self.faces * self.side * self.side) as usize;
-        self.first.clear();
-        self.first.resize(cells + 1, 0);
-        for &(cell, _) in &self.pairs {
-            self.first[cell as usize] += 1;
         }
         let mut sum = 0;
         for first in &mut self.first {
@@ -150,7 +152,7 @@ impl Grid {
             return;
         }
         for face in 0..6 {
-            let (mut polygon, mut len) = ([DVec3::ZERO; 8], 3);
+            let (mut polygon, mut len) = ([DVec3::ZERO; 16], 3);
             for (to, ray) in polygon.iter_mut().zip(caster.rays) {
                 *to = to_face(face, ray);
             }
@@ -200,12 +202,16 @@ impl Grid {
                 };
                 if !outside {
                     let cell = (face * self.side + y) * self.side + x;
+                    self.first[cell as usize] += 1;
                     self.pairs.push((cell, entry));
                 }
             }
         }
     }
 }
+
+/// Cells that a caster is in, in the mean: keeps the grid of a heap of large triangles small.
+const MOST_CELLS: usize = 16;
 
 /// Faces +x -x +y -y +z -z.
 fn face_of(ray: DVec3) -> u32 {
@@ -233,9 +239,9 @@ fn to_face(face: u32, r: DVec3) -> DVec3 {
 }
 
 /// One side of the pyramid |x| <= z, |y| <= z.
-fn clip(polygon: &[DVec3; 8], len: usize, plane: usize) -> ([DVec3; 8], usize) {
+fn clip(polygon: &[DVec3; 16], len: usize, plane: usize) -> ([DVec3; 16], usize) {
     let height = |p: DVec3| p.z + if plane.is_multiple_of(2) { 1.0 } else { -1.0 } * p[plane / 2];
-    let (mut out, mut count) = ([DVec3::ZERO; 8], 0);
+    let (mut out, mut count) = ([DVec3::ZERO; 16], 0);
     for i in 0..len {
         let (p, q) = (polygon[i], polygon[(i + 1) % len]);
         let (hp, hq) = (height(p), height(q));

@@ -54,8 +54,9 @@ impl ReachPlanes {
         }
     }
 
-    /// Cuts `piece` to the reach; it is empty afterwards if it lies outside.
-    pub(super) fn clip(&self, piece: &mut Vec<Point>, scratch: &mut Vec<Point>) {
+    /// Cuts `piece` to the reach; it is empty afterwards if it lies outside. For a light with a
+    /// range `plane . r` is 1 in the piece's plane.
+    pub(super) fn clip(&self, piece: &mut Vec<Point>, plane: DVec3, scratch: &mut Vec<Point>) {
         for n in &self.cone {
             cut(piece, scratch, |p| n.dot(p));
         }
@@ -64,15 +65,14 @@ impl ReachPlanes {
             return;
         }
         // The range cuts a disc out of the caster's plane.
-        let [a, b, c] = [piece[0].ray, piece[1].ray, piece[2].ray];
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let center = normal.dot(a) * normal;
+        let normal = plane.normalize_or_zero();
+        let center = plane / plane.length_squared();
         let radius2 = range2 - center.length_squared();
-        if radius2 <= 0.0 && normal != DVec3::ZERO {
+        if radius2 <= 0.0 {
             piece.clear();
             return;
         }
-        let radius = radius2.max(0.0).sqrt();
+        let radius = radius2.sqrt();
         for outward in around(normal) {
             cut(piece, scratch, |p| radius - outward.dot(p - center));
         }
