@@ -84,8 +84,10 @@ fn hit([a, b, c]: [Vec3; 3], start: DVec3, along: DVec3, grow: f64) -> Option<f6
 /// Whether one of `casters` shades `p`. With `grow` above 0 in doubt yes, below 0 in doubt no.
 fn shaded(world: &World, light: &Light, casters: &[u32], p: DVec3, grow: f64) -> bool {
     let (start, along) = ray(light, p);
+    // Samples may lie close to where casters cross.
+    let before = 1.0 - if grow > 0.0 { 1e-10 } else { 1e-7 };
     casters.iter().any(|&t| {
-        hit(world.corners(t), start, along, grow).is_some_and(|at| at > 0.0 && at < 1.0 - 1e-7)
+        hit(world.corners(t), start, along, grow).is_some_and(|at| at > 0.0 && at < before)
     })
 }
 

@@ -14,7 +14,7 @@ pub(crate) fn test() -> Result<(), Stop> {
     summarised(|steps| {
         run_lint(steps)?;
         steps.cargo_test("test, validators on", &["--workspace"])?;
-        steps.cargo("benches, once each", &["test", "--bench", "stages"])?;
+        steps.cargo("benches, once each", &["test", "--benches"])?;
         let mut doc = cargo(&["doc", "--workspace", "--no-deps"]);
         steps.run(
             "documentation",
