@@ -12,7 +12,8 @@ use crate::error::CliError;
 use crate::json;
 use crate::table::Table;
 use crate::values::{
-    CameraChoice, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter, metres,
+    CameraChoice, Instructions, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter,
+    metres,
 };
 
 /// Exact shadows from hundreds of lights in large triangle worlds: renders them, measures them
@@ -134,6 +135,10 @@ Examples:
 pub(crate) struct VolumesArgs {
     /// A .glb, .gltf or .obj file, or gen:NAME?key=value&...
     pub(crate) scene: String,
+    /// Use no better instructions than these: portable, avx2 or avx512. Quads are the same [default:
+    /// the best this processor has]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) instructions: Option<Instructions>,
     #[command(flatten)]
     pub(crate) common: Common,
 }

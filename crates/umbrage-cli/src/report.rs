@@ -197,6 +197,8 @@ pub(crate) struct LightsByPath {
 pub(crate) struct VolumesReport {
     pub(crate) scene: String,
     pub(crate) lights: u64,
+    /// portable, avx2 or avx512.
+    pub(crate) instructions: String,
     /// Of `parallel_ms_total`; the methods are timed on one.
     pub(crate) threads: u64,
     /// Candidates of all lights.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use glam::DVec3;
+use umbrage_core::InstructionSet;
 use umbrage_lab::Cull;
 use umbrage_lab::gpu::AdapterChoice;
 
@@ -63,6 +64,20 @@ impl FromStr for NoCull {
             let names: Vec<&str> = Cull::ALL.iter().map(|step| step.name()).collect();
             format!("expected all or one of {}", names.join(", "))
         })
+    }
+}
+
+/// `--instructions`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Instructions(pub(crate) InstructionSet);
+
+impl FromStr for Instructions {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut all = InstructionSet::ALL.into_iter();
+        let found = all.find(|set| set.name() == text).map(Self);
+        found.ok_or_else(|| "expected portable, avx2 or avx512".to_owned())
     }
 }
 

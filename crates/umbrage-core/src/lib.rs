@@ -19,5 +19,6 @@ pub mod world;
 pub use cull::{Cull, Culls};
 pub use fingerprint::Fingerprint;
 pub use frame::view::View;
+pub use lanes64::InstructionSet;
 pub use light::{Light, LightShape};
 pub use mesh::{Casting, Mesh};

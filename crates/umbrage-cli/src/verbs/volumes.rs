@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use umbrage_core::volume::{Chain, Quad, VolumeBuilder, Volumes, facing};
 use umbrage_core::world::{Layer, Subset, World, query};
-use umbrage_core::{Cull, Culls, Light};
+use umbrage_core::{Cull, Culls, InstructionSet, Light};
 
 use self::methods::Method;
 use crate::args::VolumesArgs;
@@ -49,6 +49,9 @@ struct Run {
 
 /// Loads, times every method, reports.
 pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
+    if let Some(instructions) = args.instructions {
+        instructions.0.limit();
+    }
     let setting = Setting::new(&args.scene, &args.common)?;
     let world = &setting.stage.world;
     let lights: Vec<Light> = setting.lights.iter().map(|light| light.light).collect();
@@ -110,6 +113,7 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
     let report = VolumesReport {
         scene: setting.stage.scene.name.clone(),
         lights: lights.len() as u64,
+        instructions: InstructionSet::in_use().name().to_owned(),
         threads: rayon::current_num_threads() as u64,
         subset_triangles: runs[0].lights.iter().map(|made| made.subset).sum(),
         parallel_ms_total: library(world, &lights, repeat),
@@ -184,6 +188,7 @@ fn table(report: &VolumesReport) -> Table {
     let mut table = Table::default();
     table
         .row(["scene", &report.scene])
+        .row(["instructions", &report.instructions])
         .count("lights", report.lights)
         .count("subset triangles", report.subset_triangles);
     let counter = report.methods.first().map_or(1.0, |m| m.ms_total);
