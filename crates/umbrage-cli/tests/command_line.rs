@@ -356,3 +356,51 @@ fn results_go_to_a_file_as_to_standard_output() {
     let table = umbrage(&["inspect", SOUP]);
     assert!(String::from_utf8_lossy(&table.stdout).contains("unique edges"));
 }
+
+/// Median frames are those after the first: nothing is built or uploaded again, unless asked for.
+#[test]
+fn steps_that_skip_work_are_switched_off_by_name() {
+    let render = |steps: &[&str]| json(0, &[&["render", SOUP], &SMALL[..], steps].concat());
+    let [every, none] = [render(&[]), render(&["--no-cull", "all"])];
+    let total = |report: &Value, key: &str| report["totals"][key].as_u64().expect("a count");
+    assert_eq!(total(&every, "lights_rebuilt"), 0);
+    assert_eq!(total(&every, "uploaded_volume_bytes"), 0);
+    assert_eq!(total(&none, "lights_rebuilt"), 5);
+    assert!(total(&none, "uploaded_volume_bytes") > 0);
+    assert!(total(&every, "quads_drawn") < total(&none, "quads_drawn"));
+    assert_eq!(total(&none, "quads_drawn"), total(&none, "quads"));
+    let some = render(&["--no-cull", "quads,cache"]);
+    assert!(total(&some, "lights_rebuilt") > 0);
+    let unknown = refused(2, &["render", SOUP, "--no-cull", "corners"]);
+    assert!(unknown.contains("receivers"), "{unknown}");
+}
+
+#[test]
+fn volumes_compares_methods_and_instructions() {
+    let volumes = |with: &[&str]| json(0, &[&["volumes", SOUP, "--repeat", "1"], with].concat());
+    let report = volumes(&[]);
+    assert_keys(
+        &report,
+        "scene lights instructions threads subset_triangles serial_ms_total parallel_ms_total \
+         methods lights_detail",
+    );
+    let quads = |report: &Value| -> Vec<(String, u64)> {
+        let methods = report["methods"].as_array().expect("a list");
+        let of = |m: &Value| (m["name"].to_string(), m["quads"].as_u64().expect("a count"));
+        methods.iter().map(of).collect()
+    };
+    let count = |name: &str| {
+        let all = quads(&report);
+        let found = all.iter().find(|(n, _)| n.contains(&format!("\"{name}\"")));
+        found.expect("a method").1
+    };
+    assert_eq!(count("counter"), count("counter-plain"));
+    assert!(count("counter-cuts") < count("counter") && count("counter") < count("brute"));
+    for instructions in ["portable", "avx2", "avx512"] {
+        assert_eq!(
+            quads(&report),
+            quads(&volumes(&["--instructions", instructions]))
+        );
+    }
+    refused(2, &["volumes", SOUP, "--instructions", "sse"]);
+}
