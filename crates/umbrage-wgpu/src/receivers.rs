@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use bytemuck::{Pod, Zeroable};
 use umbrage_core::cull::{Cull, Culls};
 use umbrage_core::frame::{LightPath, LightPlan};
-use umbrage_core::{Light, View};
+use umbrage_core::{Light, LightShape, View};
 use wgpu::{
     BindGroupLayout, BindingType, Buffer, BufferBindingType, BufferUsages, ComputePipeline, Device,
     Queue, ShaderStages, TextureView,
@@ -63,6 +63,8 @@ impl LightCalls {
 #[repr(C)]
 struct PlanUniform {
     homogeneous: [f32; 4],
+    axis: [f32; 3],
+    cos_outer: f32,
     tiles: [u32; 4],
     quads: [u32; 2],
     caps: [u32; 2],
@@ -231,8 +233,17 @@ impl PlanUniform {
             LightPath::ZFail(_) => 2,
         };
         let unasked = |step, bit| if culls.has(step) { 0 } else { bit };
+        let (axis, cos_outer) = match light.shape {
+            LightShape::Spot {
+                direction,
+                cos_outer,
+            } => (direction.to_array(), cos_outer),
+            _ => ([0.0; 3], -1.0),
+        };
         Self {
             homogeneous: light.homogeneous(),
+            axis,
+            cos_outer,
             tiles: [
                 s.x / TILE,
                 s.y / TILE,

@@ -17,6 +17,9 @@
 
 struct LightPlan {
     homogeneous: vec4f,
+    // Of a spot's cone; a cosine of -1 for all directions.
+    axis: vec3f,
+    cos_outer: f32,
     // first x, first y, end x, end y
     tiles: vec4u,
     // first and end
@@ -183,7 +186,8 @@ fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box 
             var box = tiles[y * across.x + x];
             if box.some != 0u && homogeneous.w != 0.0 {
                 let aside = max(max(box.low - center, center - box.high), vec3f(0.0));
-                box.some = select(0u, 1u, dot(aside, aside) <= range * range);
+                let reached = dot(aside, aside) <= range * range && meets_cone(ours, center, box);
+                box.some = select(0u, 1u, reached);
                 box.low = max(box.low, center - range);
                 box.high = min(box.high, center + range);
             }
@@ -199,6 +203,20 @@ fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box 
         spans[1u + number * across.y + y] = span;
     }
     return found;
+}
+
+// Whether the sphere around a box meets the light's cone, with slack above that of any shading.
+fn meets_cone(ours: LightPlan, apex: vec3f, box: Box) -> bool {
+    if ours.cos_outer <= -1.0 {
+        return true;
+    }
+    let v = 0.5 * (box.low + box.high) - apex;
+    let along = dot(v, ours.axis);
+    let aside = length(v - along * ours.axis);
+    let sin_outer = sqrt(max(0.0, 1.0 - ours.cos_outer * ours.cos_outer));
+    let distance = ours.cos_outer * aside - sin_outer * along;
+    let near = 0.5 * length(box.high - box.low) + length(v) / 256.0;
+    return distance <= near || length(v) <= near;
 }
 
 // The largest and the least value of dot(normal, x - foot) over the hull of the eye and a box. The
