@@ -6,9 +6,10 @@ use umbrage::{Cull, Culls, View, VolumeColor};
 
 use crate::gbuffer::texture;
 use crate::gpu::GpuError;
-use crate::lab::{Lab, Method, light_pass};
+use crate::lab::{Lab, Method};
 use crate::light_pass::{HDR, LightDraw};
 use crate::readback::read_texture;
+use crate::run::light_pass;
 use crate::stage::{Stage, StageLight};
 
 /// What a heat map counts at each pixel.

@@ -13,12 +13,14 @@ use umbrage::{
 };
 use umbrage_truth::{Mask, NearClip};
 
-use crate::gbuffer::{GBufferPass, Targets, depth_only, texture, whole};
+use crate::gbuffer::{GBufferPass, Targets, texture};
 use crate::gpu::{Gpu, GpuError};
-use crate::light_pass::{LightBinding, LightDraw, LightPass};
+use crate::light_pass::{LightDraw, LightPass};
 use crate::picture::Lit;
-use crate::readback::{read_buffer, read_texture};
+use crate::readback::read_texture;
+use crate::run::{Run, light_pass, read_calls};
 use crate::stage::{Stage, StageLight};
+use crate::timer::{StageTimes, Timer, medians, ms_since};
 
 /// How shadows are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,29 +56,6 @@ impl Method {
     }
 }
 
-/// Milliseconds of one frame's stages. GPU stages are zero without timestamps.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StageTimes {
-    /// Volumes brought up to date, on the CPU.
-    pub volumes: f64,
-    /// The same in the first frame, when nothing was there.
-    pub volumes_first: f64,
-    /// Frame planned: culling, eye counts.
-    pub plan: f64,
-    /// Buffers written.
-    pub upload: f64,
-    /// Commands recorded and submitted.
-    pub record: f64,
-    /// GPU: depth and surface.
-    pub gpu_surface: f64,
-    /// GPU: receivers found.
-    pub gpu_receivers: f64,
-    /// GPU: volumes and lights.
-    pub gpu_lights: f64,
-    /// From start to the GPU's end.
-    pub frame: f64,
-}
-
 /// A device, a stage and what is needed to draw the one on the other.
 #[derive(Debug)]
 pub struct Lab {
@@ -95,75 +74,6 @@ pub struct Lab {
     pub times: StageTimes,
     builder: VolumeBuilder,
     pub(crate) lights: Vec<Light>,
-}
-
-/// Everything that depends on target formats or size.
-#[derive(Debug)]
-pub struct Run {
-    pub(crate) targets: Targets,
-    pub(crate) shadows: ShadowRenderer,
-    pub(crate) surface: GBufferPass,
-    pub(crate) light: LightPass,
-    /// When each object was placed that `surface` knows.
-    objects: Vec<u64>,
-}
-
-impl Run {
-    /// Whether objects came or went since the last call.
-    fn placed(&mut self, stage: &Stage) -> bool {
-        let objects: Vec<u64> = stage.world.objects.iter().map(|o| o.placed).collect();
-        std::mem::replace(&mut self.objects, objects.clone()) != objects
-    }
-
-    /// Depth and surface, and what of it each light can be seen to light.
-    pub(crate) fn record_surface(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: Option<&Timer>,
-    ) {
-        self.surface
-            .record(encoder, &self.targets, timer.map(|t| t.writes(0)));
-        let depth = depth_only(&self.targets.depth);
-        let writes = timer.map(|t| t.compute_writes(2));
-        self.shadows
-            .find_receivers(&gpu.device, encoder, &depth, writes);
-    }
-
-    pub(crate) fn record_lights(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        plan: &FramePlan,
-        lights: std::ops::Range<usize>,
-        binding: &LightBinding,
-    ) {
-        self.shadows.record(pass, plan, lights, |pass, number, _| {
-            self.light.draw(pass, &self.shadows, binding, number);
-        });
-    }
-}
-
-/// The calls that receivers left, or none where they were not looked for.
-fn read_calls(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuError> {
-    let Some(calls) = shadows.calls() else {
-        return Ok(Vec::new());
-    };
-    let readable = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("calls, readable"),
-        size: calls.size(),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-            label: Some("calls"),
-        });
-    encoder.copy_buffer_to_buffer(calls, 0, &readable, 0, readable.size());
-    gpu.queue.submit([encoder.finish()]);
-    let bytes = read_buffer(gpu, &readable)?;
-    let whole = bytes.len() / size_of::<LightCalls>() * size_of::<LightCalls>();
-    Ok(bytemuck::pod_collect_to_vec(&bytes[..whole]))
 }
 
 impl Lab {
@@ -459,127 +369,5 @@ impl Lab {
             }] += 1;
         }
         counts
-    }
-}
-
-/// The pass in which all lights are drawn: depth is read only, the stencil is zero throughout
-/// between lights, and was cleared with the depth.
-pub(crate) fn light_pass<'e>(
-    encoder: &'e mut wgpu::CommandEncoder,
-    targets: &Targets,
-    color: &wgpu::Texture,
-    timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
-) -> wgpu::RenderPass<'e> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("lights"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &whole(color),
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &whole(&targets.depth),
-            depth_ops: None,
-            stencil_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Load,
-                store: wgpu::StoreOp::Store,
-            }),
-        }),
-        timestamp_writes: timestamps,
-        ..wgpu::RenderPassDescriptor::default()
-    })
-}
-
-/// Begin and end of the three GPU stages.
-#[derive(Debug)]
-pub(crate) struct Timer {
-    set: wgpu::QuerySet,
-    resolved: wgpu::Buffer,
-    readable: wgpu::Buffer,
-    ns: f32,
-}
-
-impl Timer {
-    const QUERIES: u32 = 6;
-
-    fn new(gpu: &Gpu) -> Option<Self> {
-        let ns = gpu.timestamp_ns?;
-        let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: u64::from(Self::QUERIES) * 8,
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let resolve = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        Some(Self {
-            set: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
-                label: Some("stages"),
-                ty: wgpu::QueryType::Timestamp,
-                count: Self::QUERIES,
-            }),
-            resolved: buffer("timestamps", resolve),
-            readable: buffer("timestamps, readable", wgpu::BufferUsages::MAP_READ),
-            ns,
-        })
-    }
-
-    fn writes(&self, first: u32) -> wgpu::RenderPassTimestampWrites<'_> {
-        wgpu::RenderPassTimestampWrites {
-            query_set: &self.set,
-            beginning_of_pass_write_index: Some(first),
-            end_of_pass_write_index: Some(first + 1),
-        }
-    }
-
-    fn compute_writes(&self, first: u32) -> wgpu::ComputePassTimestampWrites<'_> {
-        wgpu::ComputePassTimestampWrites {
-            query_set: &self.set,
-            beginning_of_pass_write_index: Some(first),
-            end_of_pass_write_index: Some(first + 1),
-        }
-    }
-
-    fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.set, 0..Self::QUERIES, &self.resolved, 0);
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
-    }
-
-    fn read(&self, gpu: &Gpu) -> Result<[f64; 3], GpuError> {
-        let bytes = read_buffer(gpu, &self.readable)?;
-        let ticks: Vec<u64> = bytes
-            .chunks_exact(8)
-            .map(|t| t.iter().rev().fold(0, |sum, &b| sum << 8 | u64::from(b)))
-            .collect();
-        let ms = |i: usize| ticks[i + 1].saturating_sub(ticks[i]) as f64 * f64::from(self.ns) / 1e6;
-        Ok([0, 2, 4].map(ms))
-    }
-}
-
-fn ms_since(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
-}
-
-fn medians(all: &[StageTimes]) -> StageTimes {
-    let median = |field: fn(&StageTimes) -> f64| {
-        let mut values: Vec<f64> = all.iter().map(field).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or_default()
-    };
-    StageTimes {
-        volumes: median(|t| t.volumes),
-        volumes_first: 0.0,
-        plan: median(|t| t.plan),
-        upload: median(|t| t.upload),
-        record: median(|t| t.record),
-        gpu_surface: median(|t| t.gpu_surface),
-        gpu_receivers: median(|t| t.gpu_receivers),
-        gpu_lights: median(|t| t.gpu_lights),
-        frame: median(|t| t.frame),
     }
 }

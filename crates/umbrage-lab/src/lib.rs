@@ -10,8 +10,10 @@ pub mod lab;
 pub mod light_pass;
 pub mod picture;
 pub mod readback;
+pub mod run;
 pub mod saved_world;
 pub mod seeded_lights;
 pub mod stage;
+pub mod timer;
 
 pub use umbrage::{Cull, Culls, Uploaded};

@@ -13,16 +13,15 @@
 #![forbid(unsafe_code)]
 
 mod buffers;
+mod host;
 mod pipelines;
 mod receivers;
 mod renderer;
 mod world;
 
+pub use host::{Frame, RenderError, RendererOptions, Uploaded, ViewUniform, VolumeColor};
 pub use receivers::{Call, LightCalls};
-pub use renderer::{
-    Frame, LIGHT_STENCIL, RenderError, RendererOptions, ShadowRenderer, Uploaded, ViewUniform,
-    VolumeColor,
-};
+pub use renderer::{LIGHT_STENCIL, ShadowRenderer};
 
 /// WGSL of `struct View` and `umbrage_clip`, for the host's own shaders. The layout of the
 /// uniform is [`ViewUniform`].

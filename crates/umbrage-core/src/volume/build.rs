@@ -7,115 +7,21 @@
 //! built in chunks whose results are stored in the order of the lights, so the outcome is the same
 //! whatever the number of threads.
 
-use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::store::{Block, Store, Version};
+use super::cache::{Job, Kept};
+#[cfg(debug_assertions)]
+use super::check_closed;
 use super::{
-    Chain, ChainTriangle, ClosureFault, HiddenScratch, Quad, RangePrefix, check_closed, counter,
-    drop_hidden, facing, range_first,
+    Chain, HiddenScratch, LightVolume, Quad, Volumes, counter, drop_hidden, facing, range_first,
 };
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
 use crate::stamp;
-use crate::world::{Layer, Reach, Subset, World, query};
-
-/// One light's share of [`Volumes`].
-#[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
-pub struct LightVolume {
-    /// Triangles its query returned.
-    pub subset_triangles: u32,
-    /// Triangles of the chain: those that cast. Both caps together have twice as many.
-    pub facing_triangles: u32,
-    /// Its silhouette quads, in [`Volumes::quads`].
-    pub quads: Range<u32>,
-    /// How many of them an eye in its range has to draw.
-    pub in_range: RangePrefix,
-    /// Its chain, in [`Volumes::chains`]; objects' triangles come last.
-    pub chain: Range<u32>,
-    /// When it was built, 0 if it was not: the same stamp under the same light's number means the
-    /// same volume.
-    pub stamp: u64,
-    /// Whether the last build kept it.
-    pub cached: bool,
-    /// Time spent on it when it was built, in microseconds.
-    pub build_us: f32,
-}
-
-/// The volumes of all lights, and what they were built from.
-///
-/// What is built is kept: whoever changes quads or chains by hand starts the next build from a new
-/// one.
-#[derive(Clone, Debug, Default)]
-pub struct Volumes {
-    /// One entry a light.
-    pub lights: Vec<LightVolume>,
-    /// Silhouette quads; each light's are contiguous, with unused ones in between.
-    pub quads: Vec<Quad>,
-    /// Chains: the triangles that caps are made of; each light's are contiguous.
-    pub chains: Vec<Chain>,
-    keys: Vec<Key>,
-    quad_store: Store,
-    chain_store: Store,
-    world: Seen,
-    culls: Culls,
-}
-
-/// What one light was built from, and where it lies.
-#[derive(Clone, Debug, Default)]
-struct Key {
-    light: Option<Light>,
-    fixed: Fixed,
-    /// What objects cast is right.
-    objects: bool,
-    kept: Kept,
-    quads: Block,
-    chain: Block,
-}
-
-/// What is known of what a light's fixed triangles cast.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Fixed {
-    /// Nothing.
-    #[default]
-    Stale,
-    /// It is right, with hidden casters in it.
-    Plain,
-    /// It is right, and final.
-    Settled,
-}
-
-/// The fixed triangles' part of a light.
-#[derive(Clone, Copy, Debug, Default)]
-struct Kept {
-    /// Length of its chain, in clusters.
-    chain: u32,
-    /// Triangles in that.
-    casters: u32,
-    /// Triangles in the subset.
-    subset: u32,
-}
-
-/// One light to build.
-#[derive(Clone, Copy, Debug)]
-struct Job {
-    number: usize,
-    /// Look for hidden casters.
-    hide: bool,
-}
-
-/// The world as it was at the last build.
-#[derive(Clone, Debug, Default)]
-struct Seen {
-    stamp: u64,
-    fixed: u64,
-    /// When each object had last changed, and its box.
-    objects: Vec<(u64, [glam::Vec3; 2])>,
-}
+use crate::world::{Layer, Subset, World, query};
 
 /// Builds volumes; keeps the scratch memory between builds.
 #[derive(Debug)]
@@ -141,12 +47,12 @@ struct Scratch {
 
 /// What one chunk of lights became.
 #[derive(Debug, Default)]
-struct Built {
-    lights: Vec<LightVolume>,
+pub(super) struct Built {
+    pub(super) lights: Vec<LightVolume>,
     /// Of each light.
-    kept: Vec<Kept>,
-    quads: Vec<Quad>,
-    chains: Vec<Chain>,
+    pub(super) kept: Vec<Kept>,
+    pub(super) quads: Vec<Quad>,
+    pub(super) chains: Vec<Chain>,
 }
 
 impl Default for VolumeBuilder {
@@ -241,197 +147,12 @@ fn lock(pool: &Mutex<Vec<Scratch>>) -> std::sync::MutexGuard<'_, Vec<Scratch>> {
     pool.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Key {
-    fn is_stale(&self) -> bool {
-        self.fixed == Fixed::Stale || !self.objects
-    }
-}
-
 impl Built {
     fn clear(&mut self) {
         self.lights.clear();
         self.kept.clear();
         self.quads.clear();
         self.chains.clear();
-    }
-}
-
-impl Volumes {
-    /// No volume at all for each of `lights` lights.
-    pub fn empty(lights: usize) -> Self {
-        Self {
-            lights: vec![LightVolume::default(); lights],
-            ..Self::default()
-        }
-    }
-
-    /// The quads of one light.
-    pub fn quads_of(&self, light: usize) -> &[Quad] {
-        let range = &self.lights[light].quads;
-        &self.quads[range.start as usize..range.end as usize]
-    }
-
-    /// The chain of one light.
-    pub fn chain_of(&self, light: usize) -> &[Chain] {
-        let range = &self.lights[light].chain;
-        &self.chains[range.start as usize..range.end as usize]
-    }
-
-    /// The triangles of one light's chain, ascending.
-    pub fn chain_triangles(&self, light: usize) -> impl Iterator<Item = ChainTriangle> {
-        self.chain_of(light).iter().flat_map(Chain::triangles)
-    }
-
-    /// Whether every light's volume is closed.
-    pub fn check_closed(&self, world: &World) -> Result<(), ClosureFault> {
-        (0..self.lights.len())
-            .into_par_iter()
-            .try_for_each(|light| {
-                check_closed(world, self.chain_triangles(light), self.quads_of(light))
-            })
-    }
-
-    /// The parts of [`Volumes::quads`] that were written since a copy of this version was made.
-    pub fn quads_since(&self, copied: Version) -> impl Iterator<Item = Range<usize>> {
-        self.quad_store.since(copied, self.quads.len())
-    }
-
-    /// The version of [`Volumes::quads`] as they are.
-    pub fn quads_version(&self) -> Version {
-        self.quad_store.version()
-    }
-
-    /// Marks as stale what is not of these lights in this world.
-    fn forget_changes(&mut self, world: &World, lights: &[Light], culls: Culls) {
-        for key in self.keys.iter_mut().skip(lights.len()) {
-            self.quad_store.free(&mut key.quads);
-            self.chain_store.free(&mut key.chain);
-        }
-        self.keys.resize_with(lights.len(), Key::default);
-        self.lights.resize_with(lights.len(), LightVolume::default);
-        let all = !culls.has(Cull::Cache)
-            || culls.has(Cull::Hidden) != self.culls.has(Cull::Hidden)
-            || self.world.fixed != world.fixed_stamp;
-        self.culls = culls;
-        let moved = self.world.update(world);
-        for ((key, volume), light) in self.keys.iter_mut().zip(&mut self.lights).zip(lights) {
-            if all || key.light != Some(*light) {
-                (key.fixed, key.objects) = (Fixed::Stale, false);
-            } else if !moved.is_empty() {
-                let reach = Reach::new(light);
-                key.objects &= !moved.iter().any(|at| reach.touches_box(*at));
-            }
-            if key.is_stale() {
-                *volume = LightVolume::default();
-            } else {
-                volume.cached = true;
-            }
-        }
-    }
-
-    /// The chain of a light's fixed triangles and the size of their subset, if still right.
-    fn kept_fixed(&self, number: usize) -> Option<(&[Chain], u32)> {
-        let key = &self.keys[number];
-        let first = key.chain.first as usize;
-        (key.fixed != Fixed::Stale).then(|| {
-            let chain = &self.chains[first..first + key.kept.chain as usize];
-            (chain, key.kept.subset)
-        })
-    }
-
-    /// The wanted lights that are stale, and of those that are merely not settled as many as
-    /// `budget` casters make up; without a budget all of them, to be settled at once.
-    fn jobs(
-        &self,
-        lights: &[Light],
-        wanted: impl Fn(&Light) -> bool,
-        budget: Option<u32>,
-    ) -> Vec<Job> {
-        let mut left = budget;
-        let mut jobs = Vec::new();
-        for (number, (key, light)) in self.keys.iter().zip(lights).enumerate() {
-            let after = left.map(|left| left.checked_sub(key.kept.casters));
-            let hide = match key.fixed {
-                Fixed::Settled => false,
-                Fixed::Plain => after != Some(None),
-                Fixed::Stale => budget.is_none(),
-            };
-            if (key.is_stale() || hide) && wanted(light) {
-                if let (true, Some(after)) = (hide, after) {
-                    left = after;
-                }
-                jobs.push(Job { number, hide });
-            }
-        }
-        jobs
-    }
-
-    /// Stores the light of a job, the `i`th of a chunk.
-    fn put(&mut self, job: Job, light: &Light, built: &Built, i: usize, stamp: u64) {
-        let number = job.number;
-        let volume = &built.lights[i];
-        let of = |r: &Range<u32>| r.start as usize..r.end as usize;
-        let (quads, chain) = (
-            &built.quads[of(&volume.quads)],
-            &built.chains[of(&volume.chain)],
-        );
-        let key = &mut self.keys[number];
-        self.quad_store
-            .put(&mut self.quads, &mut key.quads, quads, stamp);
-        self.chain_store
-            .put(&mut self.chains, &mut key.chain, chain, stamp);
-        key.kept = built.kept[i];
-        (key.light, key.objects) = (Some(*light), true);
-        key.fixed = match job.hide || !self.culls.has(Cull::Hidden) || key.fixed == Fixed::Settled {
-            true => Fixed::Settled,
-            false => Fixed::Plain,
-        };
-        self.lights[number] = LightVolume {
-            quads: key.quads.range(),
-            chain: key.chain.range(),
-            stamp,
-            ..volume.clone()
-        };
-    }
-
-    /// Closes the gaps once they make up half of the arrays.
-    fn compact(&mut self, stamp: u64) {
-        let quads = self.keys.iter_mut().map(|key| &mut key.quads);
-        let moved = self.quad_store.compact(&mut self.quads, quads, stamp);
-        let chains = self.keys.iter_mut().map(|key| &mut key.chain);
-        let moved = moved | self.chain_store.compact(&mut self.chains, chains, stamp);
-        if moved {
-            for (volume, key) in self.lights.iter_mut().zip(&self.keys) {
-                if !key.is_stale() {
-                    (volume.quads, volume.chain) = (key.quads.range(), key.chain.range());
-                }
-            }
-        }
-    }
-}
-
-/// The box of what is not there.
-const NOWHERE: [glam::Vec3; 2] = [glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY];
-
-impl Seen {
-    /// Takes in the world as it is; gives the boxes of what moved, before and after.
-    fn update(&mut self, world: &World) -> Vec<[glam::Vec3; 2]> {
-        let mut moved = Vec::new();
-        if self.stamp == world.stamp {
-            return moved;
-        }
-        // A world of fewer objects than the last, as of an undo, has lost those.
-        let common = world.objects.len().min(self.objects.len());
-        moved.extend(self.objects.drain(common..).map(|(_, bounds)| bounds));
-        self.objects.resize(world.objects.len(), (0, NOWHERE));
-        for (seen, object) in self.objects.iter_mut().zip(&world.objects) {
-            if seen.0 != object.changed {
-                moved.extend([seen.1, object.bounds]);
-                *seen = (object.changed, object.bounds);
-            }
-        }
-        (self.stamp, self.fixed) = (world.stamp, world.fixed_stamp);
-        moved
     }
 }
 

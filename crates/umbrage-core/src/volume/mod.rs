@@ -7,6 +7,7 @@
 
 mod brute;
 mod build;
+mod cache;
 mod chain;
 mod counter;
 mod crow;
@@ -16,9 +17,10 @@ mod plain;
 mod range;
 mod store;
 mod validate;
+mod volumes;
 
 pub use brute::brute;
-pub use build::{LightVolume, VolumeBuilder, Volumes};
+pub use build::VolumeBuilder;
 pub use chain::{Chain, ChainTriangle, Quad};
 pub use counter::counter;
 pub use crow::Crow;
@@ -28,3 +30,4 @@ pub use plain::plain_counter;
 pub use range::{QuadRange, QuadReach, RangePrefix, range_first};
 pub use store::Version;
 pub use validate::{ClosureFault, check_closed};
+pub use volumes::{LightVolume, Volumes};

@@ -12,6 +12,7 @@ use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
 use super::array::Array;
+use super::extent::Extent;
 use super::{LANES, Node, World, WorldError, boxes, planes};
 use crate::mesh::{Casting, Mesh};
 use crate::stamp;
@@ -56,19 +57,6 @@ pub enum ObjectError {
     /// It was removed, or is of another world.
     #[error("no such object in this world: it was removed, or belongs to another world")]
     Unknown,
-}
-
-/// The share of a world's arrays that belongs together.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Extent {
-    /// In [`World::positions`].
-    pub vertices: Range<u32>,
-    /// In [`World::triangles`]; an object's begin with a cluster.
-    pub triangles: Range<u32>,
-    /// In [`World::edges`].
-    pub edges: Range<u32>,
-    /// In [`Bvh::nodes`](super::Bvh::nodes); the first is the root.
-    pub nodes: Range<u32>,
 }
 
 /// One slot for an object, in use or free.
@@ -293,38 +281,6 @@ impl World {
         let root = extent.nodes.clone().next();
         let root = root.map(|root| &self.bvh.nodes[root as usize]);
         self.objects[slot].bounds = root.map_or(EMPTY, |root| [root.min, root.max]);
-    }
-}
-
-impl Extent {
-    fn lengths(&self) -> [usize; 4] {
-        [
-            self.vertices.len(),
-            self.triangles.len(),
-            self.edges.len(),
-            self.nodes.len(),
-        ]
-    }
-
-    /// The first `lengths` of it.
-    fn begin(&self, lengths: [usize; 4]) -> Self {
-        let [v, t, e, n] = self.starts();
-        let part = |start: u32, length: usize| start..start + length as u32;
-        Self {
-            vertices: part(v, lengths[0]),
-            triangles: part(t, lengths[1]),
-            edges: part(e, lengths[2]),
-            nodes: part(n, lengths[3]),
-        }
-    }
-
-    fn starts(&self) -> [u32; 4] {
-        [
-            self.vertices.start,
-            self.triangles.start,
-            self.edges.start,
-            self.nodes.start,
-        ]
     }
 }
 

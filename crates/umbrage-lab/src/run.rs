@@ -1,0 +1,112 @@
+//! What a frame is drawn with, kept from frame to frame: targets, passes, the shadow renderer.
+
+use umbrage::frame::FramePlan;
+use umbrage::{LightCalls, ShadowRenderer};
+
+use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
+use crate::gpu::{Gpu, GpuError};
+use crate::light_pass::{LightBinding, LightPass};
+use crate::readback::read_buffer;
+use crate::stage::Stage;
+use crate::timer::Timer;
+
+/// Everything that depends on target formats or size.
+#[derive(Debug)]
+pub struct Run {
+    pub(crate) targets: Targets,
+    pub(crate) shadows: ShadowRenderer,
+    pub(crate) surface: GBufferPass,
+    pub(crate) light: LightPass,
+    /// When each object was placed that `surface` knows.
+    pub(crate) objects: Vec<u64>,
+}
+
+impl Run {
+    /// Whether objects came or went since the last call.
+    pub(crate) fn placed(&mut self, stage: &Stage) -> bool {
+        let objects: Vec<u64> = stage.world.objects.iter().map(|o| o.placed).collect();
+        std::mem::replace(&mut self.objects, objects.clone()) != objects
+    }
+
+    /// Depth and surface, and what of it each light can be seen to light.
+    pub(crate) fn record_surface(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: Option<&Timer>,
+    ) {
+        self.surface
+            .record(encoder, &self.targets, timer.map(|t| t.writes(0)));
+        let depth = depth_only(&self.targets.depth);
+        let writes = timer.map(|t| t.compute_writes(2));
+        self.shadows
+            .find_receivers(&gpu.device, encoder, &depth, writes);
+    }
+
+    pub(crate) fn record_lights(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        plan: &FramePlan,
+        lights: std::ops::Range<usize>,
+        binding: &LightBinding,
+    ) {
+        self.shadows.record(pass, plan, lights, |pass, number, _| {
+            self.light.draw(pass, &self.shadows, binding, number);
+        });
+    }
+}
+
+/// The calls that receivers left, or none where they were not looked for.
+pub(crate) fn read_calls(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuError> {
+    let Some(calls) = shadows.calls() else {
+        return Ok(Vec::new());
+    };
+    let readable = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("calls, readable"),
+        size: calls.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("calls"),
+        });
+    encoder.copy_buffer_to_buffer(calls, 0, &readable, 0, readable.size());
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_buffer(gpu, &readable)?;
+    let whole = bytes.len() / size_of::<LightCalls>() * size_of::<LightCalls>();
+    Ok(bytemuck::pod_collect_to_vec(&bytes[..whole]))
+}
+
+/// The pass in which all lights are drawn: depth is read only, the stencil is zero throughout
+/// between lights, and was cleared with the depth.
+pub(crate) fn light_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    targets: &Targets,
+    color: &wgpu::Texture,
+    timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("lights"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &whole(color),
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &whole(&targets.depth),
+            depth_ops: None,
+            stencil_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Load,
+                store: wgpu::StoreOp::Store,
+            }),
+        }),
+        timestamp_writes: timestamps,
+        ..wgpu::RenderPassDescriptor::default()
+    })
+}

@@ -1,0 +1,119 @@
+//! Times of a frame's stages, on the CPU and by GPU timestamps.
+
+use std::time::Instant;
+
+use crate::gpu::{Gpu, GpuError};
+use crate::readback::read_buffer;
+
+/// Milliseconds of one frame's stages. GPU stages are zero without timestamps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageTimes {
+    /// Volumes brought up to date, on the CPU.
+    pub volumes: f64,
+    /// The same in the first frame, when nothing was there.
+    pub volumes_first: f64,
+    /// Frame planned: culling, eye counts.
+    pub plan: f64,
+    /// Buffers written.
+    pub upload: f64,
+    /// Commands recorded and submitted.
+    pub record: f64,
+    /// GPU: depth and surface.
+    pub gpu_surface: f64,
+    /// GPU: receivers found.
+    pub gpu_receivers: f64,
+    /// GPU: volumes and lights.
+    pub gpu_lights: f64,
+    /// From start to the GPU's end.
+    pub frame: f64,
+}
+
+/// Begin and end of the three GPU stages.
+#[derive(Debug)]
+pub(crate) struct Timer {
+    set: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    readable: wgpu::Buffer,
+    ns: f32,
+}
+
+impl Timer {
+    const QUERIES: u32 = 6;
+
+    pub(crate) fn new(gpu: &Gpu) -> Option<Self> {
+        let ns = gpu.timestamp_ns?;
+        let buffer = |label, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: u64::from(Self::QUERIES) * 8,
+                usage: usage | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let resolve = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        Some(Self {
+            set: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("stages"),
+                ty: wgpu::QueryType::Timestamp,
+                count: Self::QUERIES,
+            }),
+            resolved: buffer("timestamps", resolve),
+            readable: buffer("timestamps, readable", wgpu::BufferUsages::MAP_READ),
+            ns,
+        })
+    }
+
+    pub(crate) fn writes(&self, first: u32) -> wgpu::RenderPassTimestampWrites<'_> {
+        wgpu::RenderPassTimestampWrites {
+            query_set: &self.set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        }
+    }
+
+    pub(crate) fn compute_writes(&self, first: u32) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        }
+    }
+
+    pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.resolve_query_set(&self.set, 0..Self::QUERIES, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
+    }
+
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<[f64; 3], GpuError> {
+        let bytes = read_buffer(gpu, &self.readable)?;
+        let ticks: Vec<u64> = bytes
+            .chunks_exact(8)
+            .map(|t| t.iter().rev().fold(0, |sum, &b| sum << 8 | u64::from(b)))
+            .collect();
+        let ms = |i: usize| ticks[i + 1].saturating_sub(ticks[i]) as f64 * f64::from(self.ns) / 1e6;
+        Ok([0, 2, 4].map(ms))
+    }
+}
+
+pub(crate) fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+pub(crate) fn medians(all: &[StageTimes]) -> StageTimes {
+    let median = |field: fn(&StageTimes) -> f64| {
+        let mut values: Vec<f64> = all.iter().map(field).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or_default()
+    };
+    StageTimes {
+        volumes: median(|t| t.volumes),
+        volumes_first: 0.0,
+        plan: median(|t| t.plan),
+        upload: median(|t| t.upload),
+        record: median(|t| t.record),
+        gpu_surface: median(|t| t.gpu_surface),
+        gpu_receivers: median(|t| t.gpu_receivers),
+        gpu_lights: median(|t| t.gpu_lights),
+        frame: median(|t| t.frame),
+    }
+}
