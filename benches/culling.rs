@@ -4,6 +4,7 @@
 //! and without any, in turn in one run; and of what is drawn. Without scenes: the bundled worlds.
 //! `cargo test --bench culling` draws everything once, small.
 
+use umbrage_core::frame::LightPath;
 use umbrage_core::{Cull, Culls, Light, View};
 use umbrage_lab::auto_camera::auto_camera;
 use umbrage_lab::gpu::{AdapterChoice, Gpu};
@@ -61,8 +62,8 @@ struct Row {
     culls: Culls,
     frame_ms: Vec<f64>,
     lights: usize,
-    /// Triangles that cast, of all lights.
-    facing: u64,
+    /// Triangles in the volumes of these lights.
+    casters: u64,
     quads: u64,
 }
 
@@ -73,7 +74,7 @@ impl Row {
             culls,
             frame_ms: Vec::new(),
             lights: 0,
-            facing: 0,
+            casters: 0,
             quads: 0,
         }
     }
@@ -115,25 +116,27 @@ impl Site {
                     .unwrap_or_else(|error| panic!("{error}"));
                 row.frame_ms.push(lab.times.frame);
                 row.lights = lab.lights_by_path()[..2].iter().sum();
-                let volumes = lab.volumes.lights.iter();
-                row.facing = volumes.map(|l| u64::from(l.facing_triangles)).sum();
+                let drawn = |i: &usize| !matches!(lab.path(*i), LightPath::Skipped(_));
+                let casters = |i: usize| u64::from(lab.volumes.lights[i].facing_triangles);
+                row.casters = (0..self.lights.len()).filter(drawn).map(casters).sum();
                 let numbers = 0..self.lights.len();
                 row.quads = numbers.map(|i| u64::from(lab.quads_drawn(i))).sum();
             }
         }
         println!("\n{}, {} lights", self.stage.scene.name, self.lights.len());
         println!(
-            "{:20}{:>10}{:>8}{:>9}{:>11}",
-            "", "frame ms", "share", "lights", "quads"
+            "{:20}{:>10}{:>8}{:>9}{:>11}{:>11}",
+            "", "frame ms", "share", "lights", "casters", "quads"
         );
         let every = rows[0].median();
         for row in &rows {
             let (name, ms) = (&row.name, row.median());
             let (share, lights, quads) = (ms / every, row.lights, row.quads);
-            println!("{name:20}{ms:10.1}{share:8.2}{lights:9}{quads:11}");
+            let casters = row.casters;
+            println!("{name:20}{ms:10.1}{share:8.2}{lights:9}{casters:11}{quads:11}");
         }
         // All triangles that cast, of all lights: three quads and two caps each.
-        let brute = 5 * rows.last().map_or(0, |none| none.facing);
+        let brute = 5 * rows.last().map_or(0, |none| none.casters);
         let drawn = rows[0].quads;
         let fraction = drawn as f64 / brute.max(1) as f64;
         println!("polygons: {drawn} of brute force's {brute} with caps, {fraction:.4}");

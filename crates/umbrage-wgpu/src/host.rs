@@ -11,7 +11,7 @@ use wgpu::TextureFormat;
 /// What the host's frame looks like.
 #[derive(Clone, Debug)]
 pub struct RendererOptions<'a> {
-    /// Colour targets of the pass given to [`ShadowRenderer::record`].
+    /// Colour targets of the pass given to [`ShadowRenderer::record`](crate::ShadowRenderer::record).
     pub color_formats: &'a [Option<TextureFormat>],
     /// Its depth-stencil format; must have a stencil.
     pub depth_stencil_format: TextureFormat,
@@ -77,7 +77,7 @@ pub struct Frame<'a> {
     pub culls: Culls,
 }
 
-/// Bytes that one [`ShadowRenderer::prepare`] handed to the queue.
+/// Bytes that one [`ShadowRenderer::prepare`](crate::ShadowRenderer::prepare) handed to the queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uploaded {
     /// Quads and caps.

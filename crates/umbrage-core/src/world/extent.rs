@@ -5,11 +5,11 @@ use std::ops::Range;
 /// The share of a world's arrays that belongs together.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Extent {
-    /// In [`World::positions`].
+    /// In [`World::positions`](super::World::positions).
     pub vertices: Range<u32>,
-    /// In [`World::triangles`]; an object's begin with a cluster.
+    /// In [`World::triangles`](super::World::triangles); an object's begin with a cluster.
     pub triangles: Range<u32>,
-    /// In [`World::edges`].
+    /// In [`World::edges`](super::World::edges).
     pub edges: Range<u32>,
     /// In [`Bvh::nodes`](super::Bvh::nodes); the first is the root.
     pub nodes: Range<u32>,
