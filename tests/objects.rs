@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::room::CUBOID_FACES;
 use common::{Random, Site, by_profile, lab, skipped};
 use glam::{DQuat, DVec3, Vec3};
 use umbrage_core::world::{ObjectId, Pose, Reach};
@@ -20,16 +21,8 @@ fn crate_of(half: Vec3) -> Mesh {
         let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
         half * Vec3::new(sign(0), sign(1), sign(2))
     };
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles: Vec<[u32; 3]> = (faces.iter())
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+    let triangles: Vec<[u32; 3]> = (CUBOID_FACES.into_iter())
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
         .collect();
     Mesh {
         positions: (0..8).map(corner).collect(),

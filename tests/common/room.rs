@@ -75,6 +75,16 @@ fn quad(mesh: &mut Mesh, [a, b, c, d]: [Vec3; 4], material: u32) {
     triangle(mesh, [a, c, d], material);
 }
 
+/// Counter-clockwise from outside; bits 0, 1, 2 of a corner's number say high in x, y, z.
+pub(crate) const CUBOID_FACES: [[u32; 4]; 6] = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+];
+
 /// Fronts outwards, or inwards.
 fn cuboid(mesh: &mut Mesh, low: Vec3, high: Vec3, inwards: bool) {
     let p = |k: u32| {
@@ -85,15 +95,7 @@ fn cuboid(mesh: &mut Mesh, low: Vec3, high: Vec3, inwards: bool) {
             pick(4, low.z, high.z),
         )
     };
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    for [a, b, c, d] in faces {
+    for [a, b, c, d] in CUBOID_FACES {
         let corners = if inwards { [d, c, b, a] } else { [a, b, c, d] };
         quad(mesh, corners.map(p), 0);
     }

@@ -97,8 +97,8 @@ impl Lab {
         &self.gpu
     }
 
-    /// Builds volumes and plan for a view. [`Lab::mask`] and [`Lab::heat`] draw what stands in
-    /// `volumes` and `plan` then; a test may change them in between.
+    /// Brings volumes and plan up to date for a view. [`Lab::mask`] draws what stands in `volumes` and
+    /// `plan` then; a test may change them in between.
     pub fn prepare(&mut self, stage: &Stage, lights: &[StageLight], view: &View, method: Method) {
         let start = Instant::now();
         self.calls.clear();
@@ -159,8 +159,8 @@ impl Lab {
         })
     }
 
-    /// Renders `repeat` frames (and one to warm up) from scratch, volumes included, and gives the
-    /// last picture; `times` are medians.
+    /// Renders `repeat` frames after one to warm up, in which volumes are built that are not there
+    /// yet, and gives the last picture; `times` are medians.
     pub fn render(
         &mut self,
         stage: &Stage,

@@ -6,6 +6,7 @@
 //! pixel; without them every light of the plan is drawn whole.
 
 use std::borrow::Cow;
+use std::mem::offset_of;
 
 use bytemuck::{Pod, Zeroable};
 use umbrage_core::cull::{Cull, Culls};
@@ -50,11 +51,11 @@ pub struct Call {
 }
 
 impl LightCalls {
-    pub(crate) const SIDES: u64 = 0;
-    pub(crate) const CAPS: u64 = 16;
-    pub(crate) const REVERSED_CAPS: u64 = 32;
-    pub(crate) const LIGHT: u64 = 48;
-    pub(crate) const CLEAN: u64 = 64;
+    pub(crate) const SIDES: u64 = offset_of!(Self, sides) as u64;
+    pub(crate) const CAPS: u64 = offset_of!(Self, caps) as u64;
+    pub(crate) const REVERSED_CAPS: u64 = offset_of!(Self, reversed_caps) as u64;
+    pub(crate) const LIGHT: u64 = offset_of!(Self, light) as u64;
+    pub(crate) const CLEAN: u64 = offset_of!(Self, clean) as u64;
     pub(crate) const SIZE: u64 = size_of::<Self>() as u64;
 }
 

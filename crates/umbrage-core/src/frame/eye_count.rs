@@ -42,11 +42,7 @@ pub fn eye_count(
 ) -> EyeCount {
     let segment = Segment::new(world, light, eye);
     let mut count = 0;
-    let mut stack: Vec<usize> = [Layer::Fixed, Layer::Objects]
-        .into_iter()
-        .flat_map(|layer| world.roots(layer))
-        .map(|root| root as usize)
-        .collect();
+    let mut stack: Vec<usize> = roots(world).collect();
     while let Some(index) = stack.pop() {
         let node = &world.bvh.nodes[index];
         if !segment.meets_box(node.min.as_dvec3(), node.max.as_dvec3()) {
@@ -83,6 +79,13 @@ pub fn eye_count(
     EyeCount::Exact(count)
 }
 
+/// The roots of all trees.
+fn roots(world: &World) -> impl Iterator<Item = usize> {
+    let layers = [Layer::Fixed, Layer::Objects].into_iter();
+    let roots = layers.flat_map(|layer| world.roots(layer));
+    roots.map(|root| root as usize)
+}
+
 /// The coefficient of triangle `t` if it is in the chain.
 fn coefficient_in(chain: &[Chain], t: u32) -> Option<i32> {
     let cluster = t / LANES as u32;
@@ -111,11 +114,8 @@ impl Segment {
         let toward = DVec3::new(x, y, z);
         // Beyond every box, seen from the eye.
         let beyond = || {
-            let roots = [Layer::Fixed, Layer::Objects]
-                .into_iter()
-                .flat_map(|layer| world.roots(layer));
-            roots
-                .map(|root| &world.bvh.nodes[root as usize])
+            roots(world)
+                .map(|root| &world.bvh.nodes[root])
                 .map(|root| farthest(eye, root.min.as_dvec3(), root.max.as_dvec3()))
                 .fold(1.0, f64::max)
         };

@@ -2,7 +2,7 @@
 //!
 //! Takes a view, the lights and their volumes; gives a [`FramePlan`]. A light is drawn in two
 //! steps: its volume (quads, and caps where needed) counts in the stencil; its light draw passes
-//! where the stencil equals the light's reference, and zeroes what it covers for the next light.
+//! where the stencil equals the light's reference. The stencil is zero again for the next light.
 
 use std::ops::Range;
 

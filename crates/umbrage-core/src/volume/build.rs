@@ -86,10 +86,8 @@ impl VolumeBuilder {
         wanted: impl Fn(&Light) -> bool,
         volumes: &mut Volumes,
     ) -> usize {
-        volumes.forget_changes(world, lights, self.culls);
-        let jobs = volumes.jobs(lights, wanted, Some(self.hidden_budget));
-        self.work(world, lights, &jobs, volumes);
-        jobs.len()
+        let budget = Some(self.hidden_budget);
+        self.update(world, lights, wanted, budget, volumes)
     }
 
     /// As [`VolumeBuilder::build`], and finishes what further calls would do: for loading screens,
@@ -101,13 +99,20 @@ impl VolumeBuilder {
         wanted: impl Fn(&Light) -> bool,
         volumes: &mut Volumes,
     ) -> usize {
-        volumes.forget_changes(world, lights, self.culls);
-        let jobs = volumes.jobs(lights, wanted, None);
-        self.work(world, lights, &jobs, volumes);
-        jobs.len()
+        self.update(world, lights, wanted, None, volumes)
     }
 
-    fn work(&mut self, world: &World, lights: &[Light], jobs: &[Job], volumes: &mut Volumes) {
+    /// `budget`: casters among which to look for hidden ones; all if there is none.
+    fn update(
+        &mut self,
+        world: &World,
+        lights: &[Light],
+        wanted: impl Fn(&Light) -> bool,
+        budget: Option<u32>,
+        volumes: &mut Volumes,
+    ) -> usize {
+        volumes.forget_changes(world, lights, self.culls);
+        let jobs = &volumes.jobs(lights, wanted, budget)[..];
         let length = (jobs.len() / (8 * rayon::current_num_threads())).clamp(1, 16);
         let chunk_count = jobs.len().div_ceil(length);
         self.chunks
@@ -138,6 +143,7 @@ impl VolumeBuilder {
             }
         }
         volumes.compact(stamp);
+        jobs.len()
     }
 }
 
@@ -186,8 +192,9 @@ fn build_one(
         }
     };
     if hide {
+        let clusters = scratch.chain.len();
         drop_hidden(world, light, &mut scratch.chain, &mut scratch.hidden);
-        if scratch.chain.len() > MANY_CLUSTERS {
+        if clusters > MANY_CLUSTERS {
             // A sun over a large world needs a hundred megabytes, once.
             scratch.hidden = HiddenScratch::default();
         }

@@ -11,7 +11,7 @@ use super::store::Block;
 use super::{Chain, LightVolume, Volumes};
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
-use crate::world::{Reach, World};
+use crate::world::{EMPTY_BOX, Reach, World};
 
 /// What one light was built from, and where it lies.
 #[derive(Clone, Debug, Default)]
@@ -181,9 +181,6 @@ impl Volumes {
     }
 }
 
-/// The box of what is not there.
-const NOWHERE: [glam::Vec3; 2] = [glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY];
-
 impl Seen {
     /// Takes in the world as it is; gives the boxes of what moved, before and after.
     fn update(&mut self, world: &World) -> Vec<[glam::Vec3; 2]> {
@@ -194,7 +191,7 @@ impl Seen {
         // A world of fewer objects than the last, as of an undo, has lost those.
         let common = world.objects.len().min(self.objects.len());
         moved.extend(self.objects.drain(common..).map(|(_, bounds)| bounds));
-        self.objects.resize(world.objects.len(), (0, NOWHERE));
+        self.objects.resize(world.objects.len(), (0, EMPTY_BOX));
         for (seen, object) in self.objects.iter_mut().zip(&world.objects) {
             if seen.0 != object.changed {
                 moved.extend([seen.1, object.bounds]);

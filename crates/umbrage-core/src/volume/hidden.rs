@@ -5,7 +5,8 @@
 //! every part within the light's reach lies behind other triangles of the chain. **Why it is
 //! exact:** along a light ray the nearest caster has none in front of it, so it is never hidden,
 //! and what it shades is all that the ray shades. The volume stays closed because its quads are
-//! the boundary of whatever chain is left. Does not depend on the view, nor on the number of
+//! the boundary of whatever chain is left. Slivers of f64 rounding (`SLIVER` in `cover`) count as
+//! covered; cracks of f32 rounding do not. Does not depend on the view, nor on the number of
 //! threads. Not for counting how many casters shade a point: the count changes, its being zero
 //! does not.
 

@@ -39,6 +39,7 @@ pub use query::{Layer, Reach, query};
 pub use save::SavedWorldError;
 pub use subset::{Members, Subset};
 
+pub(crate) use objects::EMPTY_BOX;
 pub(crate) use planes::{FILTER, exact_side};
 pub(crate) use subset::lanes;
 pub use validate::WorldFault;

@@ -75,7 +75,8 @@ pub struct Object {
     rest: Vec<Vec3>,
 }
 
-const EMPTY: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+/// Of what has no triangle: nothing touches it.
+pub(crate) const EMPTY_BOX: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
 /// What stands in the place of a triangle that is none: no area, and casts nothing.
 const PADDING: [u32; 3] = [0; 3];
@@ -133,7 +134,7 @@ impl World {
         let object = &mut self.objects[slot];
         object.rest.clear();
         object.placed = 0;
-        object.bounds = EMPTY;
+        object.bounds = EMPTY_BOX;
         self.stamp = stamp::next();
         object.changed = self.stamp;
         let triangles = as_usize(&object.room.triangles);
@@ -220,7 +221,7 @@ impl World {
             room,
             placed: 0,
             changed: 0,
-            bounds: EMPTY,
+            bounds: EMPTY_BOX,
             rest: Vec::new(),
         });
         self.objects.len() - 1
@@ -268,7 +269,7 @@ impl World {
             let node = self.bvh.nodes[i];
             let (min, max) = if node.is_leaf() {
                 let corners = node.range().flat_map(|t| self.corners(t));
-                corners.fold((EMPTY[0], EMPTY[1]), |(min, max), p| {
+                corners.fold((EMPTY_BOX[0], EMPTY_BOX[1]), |(min, max), p| {
                     (min.min(p), max.max(p))
                 })
             } else {
@@ -280,7 +281,7 @@ impl World {
         }
         let root = extent.nodes.clone().next();
         let root = root.map(|root| &self.bvh.nodes[root as usize]);
-        self.objects[slot].bounds = root.map_or(EMPTY, |root| [root.min, root.max]);
+        self.objects[slot].bounds = root.map_or(EMPTY_BOX, |root| [root.min, root.max]);
     }
 }
 
