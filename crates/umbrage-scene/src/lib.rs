@@ -23,6 +23,7 @@ mod image;
 mod obj;
 mod progress;
 mod report;
+pub mod rig;
 mod scene;
 mod soup;
 mod source;
