@@ -63,7 +63,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
     });
     Ok(CheckReport {
         scene: stage.scene.name.clone(),
-        method: method.name().to_owned(),
+        method: method.name().into_owned(),
         adapter: lab.gpu().adapter.clone(),
         size: view.size,
         pixels: found.pixels,

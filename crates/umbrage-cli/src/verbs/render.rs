@@ -101,7 +101,7 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
     ];
     RenderReport {
         scene: setting.stage.scene.name.clone(),
-        method: method.name().to_owned(),
+        method: method.name().into_owned(),
         adapter: lab.gpu().adapter.clone(),
         size: setting.view.size,
         frame_ms: times.frame,
