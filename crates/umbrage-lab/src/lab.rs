@@ -39,8 +39,10 @@ pub struct Lab {
     pub calls: Vec<LightCalls>,
     /// Bytes written for the last frame.
     pub uploaded: Uploaded,
-    /// Times of the last frame.
+    /// Times of the last frame, or medians of the last rendering.
     pub times: StageTimes,
+    /// Times of each frame of the last rendering; the first warmed up.
+    pub frames: Vec<StageTimes>,
     /// What the technique of the last frames holds.
     pub held: TechniqueReport,
     builder: VolumeBuilder,
@@ -59,6 +61,7 @@ impl Lab {
             calls: Vec::new(),
             uploaded: Uploaded::default(),
             times: StageTimes::default(),
+            frames: Vec::new(),
             held: TechniqueReport::default(),
             builder: VolumeBuilder::default(),
             lights: Vec::new(),
@@ -146,13 +149,26 @@ impl Lab {
         method: Method,
         repeat: usize,
     ) -> Result<Lit, GpuError> {
+        self.render_while(stage, lights, view, method, |frames| frames.len() <= repeat)
+    }
+
+    /// As [`Lab::render`], with frames as long as `more`, asked after each, says that those so far
+    /// are not enough.
+    pub fn render_while(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        mut more: impl FnMut(&[StageTimes]) -> bool,
+    ) -> Result<Lit, GpuError> {
         let draw = LightDraw::Shade;
         let mut run = self.run(stage, view, method, draw, VolumeColor::None)?;
         let hdr_usage = wgpu::TextureUsages::COPY_SRC;
         let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
         let timer = Timer::new(&self.gpu);
-        let mut all: Vec<StageTimes> = Vec::new();
-        for _ in 0..=repeat {
+        self.frames.clear();
+        loop {
             let start = Instant::now();
             self.prepare(stage, lights, view, method);
             let upload = Instant::now();
@@ -192,11 +208,14 @@ impl Lab {
                 self.times.gpu_receivers = receivers;
                 self.times.gpu_lights = lights;
             }
-            all.push(self.times);
+            self.frames.push(self.times);
+            if !more(&self.frames) {
+                break;
+            }
         }
-        let first = all.first().map_or(0.0, |times| times.volumes);
-        self.times = medians(&all[1.min(repeat)..]);
-        self.times.volumes_first = first;
+        let timed = usize::from(self.frames.len() > 1);
+        self.times = medians(&self.frames[timed..]);
+        self.times.volumes_first = self.frames[0].volumes;
         self.calls = read_calls(&self.gpu, &run.shadows)?;
         self.held = run.technique.report();
         let light = read_texture(&self.gpu, &hdr)?;
