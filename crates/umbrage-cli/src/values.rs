@@ -209,6 +209,14 @@ pub(crate) fn metres(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A time in seconds.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(time) if time.is_finite() => Ok(time),
+        _ => Err("expected a time in seconds, as in 2.5".to_owned()),
+    }
+}
+
 /// `--adapter`.
 pub(crate) fn adapter(text: &str) -> Result<AdapterChoice, String> {
     match text {

@@ -268,6 +268,7 @@ impl Lab {
         if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
+        run.surface.update(&self.gpu, stage);
         if run.method != self.method {
             let method = self.method;
             run.technique = technique(method, &self.gpu, &run.shadows, LightDraw::Mark)?;
