@@ -16,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 mod budget;
+mod check;
 mod error;
 mod generate;
 mod gltf;

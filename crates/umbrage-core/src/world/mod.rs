@@ -17,6 +17,7 @@ mod objects;
 mod planes;
 mod query;
 mod save;
+mod slots;
 pub mod stages;
 mod subset;
 mod validate;
