@@ -13,10 +13,9 @@ fn position(vertex: u32) -> vec3f {
     return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
 }
 
-@vertex
-fn extrude(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
-    -> @builtin(position) @invariant vec4f
-{
+// The corner, or its image at infinity. `recede` as in the library's volumes: sides run a little
+// below the surface of the triangle whose edge they hang from, caps must tie with it.
+fn extruded(corner: u32, number: u32, recede: f32) -> vec4f {
     let light = lights[number];
     let first = corner / 3u * 3u;
     let a = position(triangles[first]);
@@ -26,9 +25,23 @@ fn extrude(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: 
     // The same for all three corners, to the last bit: a triangle goes or stays as a whole.
     let faces = dot(cross(b - a, c - a), light.xyz - a * light.w) > 0.0;
     if faces {
-        return umbrage_clip(view, p - view.eye, 1.0);
+        return umbrage_clip(view, p - view.eye, recede);
     }
     return umbrage_clip(view, p * light.w - light.xyz, 0.0);
+}
+
+@vertex
+fn cap(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
+    -> @builtin(position) @invariant vec4f
+{
+    return extruded(corner, number, 1.0);
+}
+
+@vertex
+fn side(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
+    -> @builtin(position) @invariant vec4f
+{
+    return extruded(corner, number, 1.0 - 1.0 / 2097152.0);
 }
 
 // All of the scissor, to leave the stencil clean for the next light.

@@ -8,9 +8,10 @@
 //! the surface. Nothing is uploaded and nothing found on the CPU, but every triangle of an object is
 //! drawn for every light that reaches the object.
 //!
-//! That is right for closed meshes whose triangles all cast from their front. An edge without a
-//! partner (an opening, a third triangle, opposite winding) has no quad, and the volume is torn
-//! there: such edges are counted, and the note says so.
+//! That is right for closed meshes, whose shadows are those of casters with two sides: a light inside
+//! one leaves none of it facing, all of it goes to infinity, and all else is in shadow. An edge
+//! without a partner (an opening, a third triangle, opposite winding) has no quad, and the volume
+//! is torn there: such edges are counted, and the note says so.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -32,7 +33,8 @@ use crate::stage::Stage;
 #[derive(Debug)]
 pub(crate) struct Extrude {
     light: LightPass,
-    volume: wgpu::RenderPipeline,
+    caps: wgpu::RenderPipeline,
+    sides: wgpu::RenderPipeline,
     clean: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     buffers: Option<Buffers>,
@@ -53,8 +55,10 @@ struct Buffers {
 /// Triangles that cast together: an instance of the scene, or an object.
 #[derive(Clone, Debug)]
 struct ClosedMesh {
-    /// Its share of the corners.
-    corners: Range<u32>,
+    /// Its triangles among the corners.
+    caps: Range<u32>,
+    /// The quads between them.
+    sides: Range<u32>,
     triangles: Triangles,
 }
 
@@ -132,13 +136,11 @@ impl Extrude {
                 write_mask: 0xff,
             }
         };
+        let behind = stencil([DecrementWrap, IncrementWrap], Keep);
         Self {
             light: LightPass::new(gpu, shadows, draw, LitBy::Stencil),
-            volume: pipeline(
-                "extrude",
-                "extrude",
-                stencil([DecrementWrap, IncrementWrap], Keep),
-            ),
+            caps: pipeline("extrude caps", "cap", behind.clone()),
+            sides: pipeline("extrude sides", "side", behind),
             clean: pipeline("clean", "everywhere", stencil([Zero, Zero], Zero)),
             layout,
             buffers: None,
@@ -200,12 +202,19 @@ impl Technique for Extrude {
             .shadows
             .record(&mut pass, given.plan, lights, |pass, number, _| {
                 let instance = number as u32..number as u32 + 1;
-                let light = &given.lights[number].light;
-                pass.set_pipeline(&self.volume);
+                let (light, world) = (&given.lights[number].light, &given.stage.world);
                 pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
-                for mesh in &buffers.meshes {
-                    if reaches(light, mesh.bounds(&given.stage.world)) {
-                        pass.draw_indexed(mesh.corners.clone(), 0, instance.clone());
+                for (pipeline, corners) in [
+                    (
+                        &self.caps,
+                        (|mesh| &mesh.caps) as fn(&ClosedMesh) -> &Range<u32>,
+                    ),
+                    (&self.sides, |mesh| &mesh.sides),
+                ] {
+                    pass.set_pipeline(pipeline);
+                    let reached = |mesh: &&ClosedMesh| reaches(light, mesh.bounds(world));
+                    for mesh in buffers.meshes.iter().filter(reached) {
+                        pass.draw_indexed(corners(mesh).clone(), 0, instance.clone());
                     }
                 }
                 self.light.draw(pass, given.shadows, number, None);
@@ -255,11 +264,14 @@ impl Buffers {
         let (mut edges, mut unpaired) = (0, 0);
         let mut add = |of: &[u32], triangles: Triangles| {
             let first = corners.len() as u32;
+            corners.extend(of.iter().flat_map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
+            let between = corners.len() as u32;
             let paired = close(world, of, &mut corners);
             edges += paired.edges;
             unpaired += paired.unpaired;
             meshes.push(ClosedMesh {
-                corners: first..corners.len() as u32,
+                caps: first..between,
+                sides: between..corners.len() as u32,
                 triangles,
             });
         };
@@ -301,16 +313,14 @@ struct Pairing {
     unpaired: usize,
 }
 
-/// Appends the triangles numbered `of` and the quads between them, as corners: three times the
-/// triangle's number plus 0, 1 or 2 (the article's pseudo code, with a checklist that knows
-/// directions).
+/// Appends the quads between the triangles numbered `of`, as corners: three times a triangle's
+/// number plus 0, 1 or 2 (the article's pseudo code, with a checklist that knows directions).
 fn close(world: &World, of: &[u32], corners: &mut Vec<u32>) -> Pairing {
     // Start and end vertex, and the first of the side's two corners, in its triangle.
     let mut checklist: HashMap<[u32; 2], Vec<[u32; 2]>> = HashMap::new();
     let mut edges = 0;
     for &t in of {
         let vertices = world.triangles[t as usize];
-        corners.extend([3 * t, 3 * t + 1, 3 * t + 2]);
         for side in 0..3 {
             let next = (side + 1) % 3;
             let [a, b] = [vertices[side], vertices[next]];
@@ -384,7 +394,7 @@ mod tests {
         let mut corners = Vec::new();
         let all: Vec<u32> = (0..triangles.len() as u32).collect();
         let found = close(&world, &all, &mut corners);
-        (found, (corners.len() - 3 * triangles.len()) / 6)
+        (found, corners.len() / 6)
     }
 
     #[test]
