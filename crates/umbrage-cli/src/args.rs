@@ -10,7 +10,7 @@ use umbrage_lab::gpu::AdapterChoice;
 
 use crate::error::CliError;
 use crate::json;
-use crate::table::Table;
+use umbrage_report::Table;
 use crate::values::{
     CameraChoice, Instructions, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter,
     metres,

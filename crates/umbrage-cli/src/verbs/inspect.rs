@@ -14,7 +14,7 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
 use crate::setting::{use_threads, world_step};
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, builds, counts.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
