@@ -8,6 +8,7 @@ use umbrage_core::world::SavedWorldError;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
 use umbrage_lab::stage::StageError;
+use umbrage_report::bench::BaselineError;
 
 /// The one error of the command line. Wrong options never get here: clap reports them.
 #[derive(Debug, Error)]
@@ -66,6 +67,12 @@ impl From<GpuError> for CliError {
             GpuError::NoAdapter { .. } => CliError::NoAdapter(error.to_string()),
             _ => CliError::BadInput(error.to_string()),
         }
+    }
+}
+
+impl From<BaselineError> for CliError {
+    fn from(error: BaselineError) -> Self {
+        CliError::BadInput(error.to_string())
     }
 }
 

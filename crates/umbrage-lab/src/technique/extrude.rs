@@ -11,7 +11,9 @@
 //! That is right for closed meshes, whose shadows are those of casters with two sides: a light inside
 //! one leaves none of it facing, all of it goes to infinity, and all else is in shadow. An edge
 //! without a partner (an opening, a third triangle, opposite winding) has no quad, and the volume
-//! is torn there: such edges are counted, and the note says so.
+//! is torn there: such edges are counted, and the note says so. A shell that is closed around its
+//! lights, as the rooms of most game maps are, faces them all over and so has no dark cap: its own
+//! walls come out in shadow.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
