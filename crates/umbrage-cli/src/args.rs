@@ -10,11 +10,11 @@ use umbrage_lab::gpu::AdapterChoice;
 
 use crate::error::CliError;
 use crate::json;
-use umbrage_report::Table;
 use crate::values::{
     CameraChoice, Instructions, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter,
     metres,
 };
+use umbrage_report::Table;
 
 /// Exact shadows from hundreds of lights in large triangle worlds: renders them, measures them
 /// against an oracle, and says which light costs what.
