@@ -18,7 +18,7 @@ use umbrage_report::Table;
 
 /// Loads, builds, counts.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    use_threads(&args.common);
+    use_threads(&args.common.run);
     let bar = Bar::new(args.common.results.quiet);
     let start = Instant::now();
     let scene = umbrage_scene::open(&args.scene, &bar)?;
