@@ -82,6 +82,12 @@ impl From<PictureError> for CliError {
     }
 }
 
+impl From<BaselineError> for CliError {
+    fn from(error: BaselineError) -> Self {
+        CliError::BadInput(error.to_string())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,5 +97,13 @@ mod tests {
         assert_eq!(CliError::CheckFailed(String::new()).exit_code(), 1);
         assert_eq!(CliError::BadInput(String::new()).exit_code(), 2);
         assert_eq!(CliError::NoAdapter(String::new()).exit_code(), 3);
+    }
+
+    #[test]
+    fn a_baseline_that_is_none_is_bad_input() {
+        let error = umbrage_report::bench::read(Path::new("no/such/report.json")).unwrap_err();
+        let error = CliError::from(error);
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("no/such/report.json"), "{error}");
     }
 }

@@ -22,7 +22,7 @@
 //! assert!(bench::terminal(&report).contains("2.00 x"));
 //! ```
 //!
-//! The rooms: [`bench`] knows what a benchmark measures. Below it, of use to any report:
+//! The rooms: [`mod@bench`] knows what a benchmark measures. Below it, of use to any report:
 //! [`page`] (the HTML shell, style and script), [`sortable`] (HTML tables), [`plot`] (SVG) and
 //! [`Table`] (terminal).
 #![forbid(unsafe_code)]

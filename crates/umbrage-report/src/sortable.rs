@@ -53,7 +53,7 @@ impl Cell {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
     /// Classes of the row.
-    pub class: &'static str,
+    pub classes: Vec<&'static str>,
     /// What is highlighted together with it.
     pub method: String,
     /// One a column; the first is the row's head.
@@ -87,7 +87,7 @@ pub fn table(caption: &str, columns: &[Column], rows: &[Row]) -> String {
     for row in rows {
         html += &format!(
             "<tr class=\"{}\" data-method=\"{}\">",
-            row.class,
+            row.classes.join(" "),
             escape(&row.method)
         );
         for (place, (cell, column)) in row.cells.iter().zip(columns).enumerate() {

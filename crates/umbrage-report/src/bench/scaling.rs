@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::{BenchReport, BenchRow};
+use crate::grouped;
 
 /// What grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,7 @@ impl Axis {
             triangles,
             ..
         } = row;
+        let [lights, triangles] = [lights, triangles].map(|count| grouped(*count));
         let size = format!("{}x{}", row.size[0], row.size[1]);
         match self {
             Self::Pixels => vec![format!("{}, camera {camera}", row.scene)],

@@ -24,6 +24,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
         if (a === null || b === null) return (a === null) - (b === null);
         return down ? compare(b, a) : compare(a, b);
       });
+      for (const row of body.rows) row.classList.remove("start"); // of a view: no longer so
       body.append(...rows.map(([, row]) => row));
     });
   });

@@ -1,9 +1,9 @@
 //! Names beside their marks, kept apart.
 //!
-//! Takes marks and the box that labels must stay in; gives a box for each name. Greedy, after the
+//! Takes marks, lines, and the box that labels must stay in; gives a box for each name. Greedy, after the
 //! candidate positions of J. Christensen, J. Marks, S. Shieber, "An empirical study of algorithms
 //! for point-feature label placement", 1995: marks with the least room around them first, each at
-//! the position that covers least of other marks and labels, near ones before far ones.
+//! the position that covers least of marks, lines and other labels, near ones before far ones.
 //! Invariant: no label leaves the bounds unless it is larger than they are.
 
 use super::{GLYPH, text_width};
@@ -39,6 +39,12 @@ impl LabelBox {
         [0, 1].map(|k| to[k].clamp(self.min[k], self.max[k]))
     }
 
+    fn widened(mut self, by: f64) -> Self {
+        self.min[0] -= by;
+        self.max[0] += by;
+        self
+    }
+
     fn around(at: [f64; 2], radius: f64) -> Self {
         Self {
             min: at.map(|x| x - radius),
@@ -61,8 +67,12 @@ impl LabelBox {
 /// Radius of a mark, with some air.
 const MARK: f64 = 6.5;
 
-/// One box for each anchor, in their order.
-pub fn place(anchors: &[Anchor], bounds: &LabelBox) -> Vec<LabelBox> {
+/// Air to the left and right of a label, so that two of them do not read as one.
+const AIR: f64 = 5.0;
+
+/// One box for each anchor, in their order. `lines` had better not be covered.
+pub fn place(anchors: &[Anchor], lines: &[[[f64; 2]; 2]], bounds: &LabelBox) -> Vec<LabelBox> {
+    let dots: Vec<[f64; 2]> = lines.iter().flat_map(dotted).collect();
     let marks: Vec<LabelBox> = anchors
         .iter()
         .map(|a| LabelBox::around(a.at, MARK))
@@ -83,10 +93,12 @@ pub fn place(anchors: &[Anchor], bounds: &LabelBox) -> Vec<LabelBox> {
             let others = placed
                 .iter()
                 .flatten()
-                .map(|other| label.overlap(other) * 2.0);
+                .map(|other| label.widened(AIR).overlap(other) * 2.0);
             // Its own mark is not to be covered either.
             let covered = marks.iter().map(|mark| label.overlap(mark) * 3.0);
-            others.chain(covered).sum::<f64>() + rank as f64 * 4.0
+            let crossed = dots.iter().filter(|&&dot| label.nearest(dot) == dot);
+            let crossed = crossed.count() as f64 * DOT * 2.0;
+            others.chain(covered).sum::<f64>() + crossed + rank as f64 * 4.0
         };
         let best = candidates(&anchors[i])
             .enumerate()
@@ -96,6 +108,18 @@ pub fn place(anchors: &[Anchor], bounds: &LabelBox) -> Vec<LabelBox> {
         placed[i] = best.map(|(_, label)| label);
     }
     placed.into_iter().flatten().collect()
+}
+
+/// Distance of the points that stand for a line.
+const DOT: f64 = 4.0;
+
+fn dotted(&[from, to]: &[[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    let steps = (dx.hypot(dy) / DOT).ceil().clamp(1.0, 1000.0);
+    (0..=steps as u32).map(move |step| {
+        let share = f64::from(step) / steps;
+        [from[0] + dx * share, from[1] + dy * share]
+    })
 }
 
 /// Positions around a mark: right, left, above, below, the corners; then the same further out.
@@ -166,14 +190,14 @@ mod tests {
 
     #[test]
     fn a_lone_mark_has_its_name_to_the_right() {
-        let label = place(&anchors(&[[100.0, 100.0]]), &BOUNDS)[0];
+        let label = place(&anchors(&[[100.0, 100.0]]), &[], &BOUNDS)[0];
         assert!(label.min[0] > 100.0 && label.min[1] < 100.0 && label.max[1] > 100.0);
     }
 
     #[test]
     fn a_crowd_in_one_row_is_staggered_without_overlap() {
         let points = [100.0, 104.0, 112.0, 118.0, 130.0, 131.0].map(|x| [x, 150.0]);
-        let boxes = place(&anchors(&points), &BOUNDS);
+        let boxes = place(&anchors(&points), &[], &BOUNDS);
         assert_eq!(worst_overlap(&boxes), 0.0, "{boxes:?}");
         // Negative control: all to the right of their marks, they do overlap.
         let naive: Vec<LabelBox> = anchors(&points)
@@ -184,13 +208,23 @@ mod tests {
     }
 
     #[test]
+    fn a_label_moves_out_of_the_way_of_a_line() {
+        let mark = anchors(&[[100.0, 100.0]]);
+        let beside = place(&mark, &[], &BOUNDS)[0];
+        let line = [[80.0, 100.0], [180.0, 100.0]];
+        let away = place(&mark, &[line], &BOUNDS)[0];
+        assert!(beside.min[1] < 100.0 && beside.max[1] > 100.0);
+        assert!(away.max[1] < 100.0 || away.min[1] > 100.0, "{away:?}");
+    }
+
+    #[test]
     fn labels_stay_in_bounds() {
         let corners = [[1.0, 1.0], [499.0, 1.0], [1.0, 299.0], [499.0, 299.0]];
-        for label in place(&anchors(&corners), &BOUNDS) {
+        for label in place(&anchors(&corners), &[], &BOUNDS) {
             for k in [0, 1] {
                 assert!(label.min[k] >= BOUNDS.min[k] && label.max[k] <= BOUNDS.max[k]);
             }
         }
-        assert!(place(&[], &BOUNDS).is_empty());
+        assert!(place(&[], &[], &BOUNDS).is_empty());
     }
 }

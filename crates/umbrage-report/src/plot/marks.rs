@@ -16,11 +16,11 @@ pub enum Shape {
     Up,
     /// Pointing down.
     Down,
-    /// Two crossed lines, slanted.
+    /// With six corners.
+    Hexagon,
+    /// Two crossed lines; has no inside, so it is drawn as a disc where it is filled.
     Cross,
-    /// Two crossed lines, upright.
-    Plus,
-    /// Three crossed lines.
+    /// Three crossed lines; likewise.
     Star,
 }
 
@@ -68,16 +68,23 @@ impl Look {
             path(data + "Z")
         };
         match self.shape {
-            Shape::Disc => {
-                format!("<circle class=\"mark\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.4\"/>")
-            }
             Shape::Square => corners(&[[-3.9, -3.9], [3.9, -3.9], [3.9, 3.9], [-3.9, 3.9]]),
             Shape::Diamond => corners(&[[0.0, -5.4], [5.4, 0.0], [0.0, 5.4], [-5.4, 0.0]]),
             Shape::Up => corners(&[[0.0, -5.0], [4.8, 3.6], [-4.8, 3.6]]),
             Shape::Down => corners(&[[0.0, 5.0], [4.8, -3.6], [-4.8, -3.6]]),
-            Shape::Cross => lines(&[45.0, 135.0]),
-            Shape::Plus => lines(&[0.0, 90.0]),
-            Shape::Star => lines(&[30.0, 90.0, 150.0]),
+            Shape::Hexagon => corners(&[
+                [-2.5, -4.4],
+                [2.5, -4.4],
+                [5.0, 0.0],
+                [2.5, 4.4],
+                [-2.5, 4.4],
+                [-5.0, 0.0],
+            ]),
+            Shape::Cross if !self.filled => lines(&[45.0, 135.0]),
+            Shape::Star if !self.filled => lines(&[30.0, 90.0, 150.0]),
+            Shape::Disc | Shape::Cross | Shape::Star => {
+                format!("<circle class=\"mark\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4.4\"/>")
+            }
         }
     }
 }

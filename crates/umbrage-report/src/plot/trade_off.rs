@@ -4,8 +4,12 @@
 //! the logarithm a lane of its own for no error at all, and, only where it is needed, one for what
 //! was not judged. Better is left and down.
 
-use super::{Anchor, Frame, GLYPH, LabelBox, LogScale, Look, axes, open, place};
+use super::{Frame, LogScale, Look, axes, open};
 use crate::page::escape;
+
+mod spots;
+
+use spots::{curves, draw_curve, labels, marks};
 
 /// How far up a spot is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +57,9 @@ pub struct TradeOff {
 /// Height of the lane of zero, and of that of the unknown.
 const LANES: [f64; 2] = [84.0, 56.0];
 const GAP: f64 = 10.0;
+/// Written in the lane of zero; the width that takes, and its height above the lane's end.
+const NONE_WRONG: &str = "none wrong";
+const HINT: [f64; 2] = [66.0, 6.0];
 
 impl TradeOff {
     /// As an SVG element of that width and height in pixels.
@@ -87,7 +94,7 @@ impl TradeOff {
             Height::Unknown => None,
         });
         let x = LogScale::around(times, 0.06, [frame.left, frame.right]);
-        let y = LogScale::around(errors, 0.08, [log.bottom, log.top]);
+        let y = LogScale::around(errors, 0.1, [log.bottom, log.top]);
         let at = |spot: &Spot| {
             let up = match spot.y {
                 Height::Error(error) if error > 0.0 => y.at(error),
@@ -98,20 +105,23 @@ impl TradeOff {
         };
 
         let mut svg = open("trade-off", size, &self.title);
-        let lane = |top: f64, bottom: f64, name: &str| {
+        let lane = |top: f64, bottom: f64, tick: &str, hint: &str| {
             format!(
                 "<rect class=\"lane\" x=\"{}\" y=\"{top}\" width=\"{}\" height=\"{}\"/>\
-                 <text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{name}</text>",
+                 <text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{tick}</text>\
+                 <text class=\"hint\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{hint}</text>",
                 frame.left,
                 frame.right - frame.left,
                 bottom - top,
                 frame.left - 7.0,
-                (top + bottom) / 2.0 + 4.0
+                (top + bottom) / 2.0 + 4.0,
+                frame.right - 6.0,
+                bottom - HINT[1],
             )
         };
-        svg += &lane(zero_top, zero_bottom, "0");
+        svg += &lane(zero_top, zero_bottom, "0", NONE_WRONG);
         if unknown {
-            svg += &lane(unknown_top, frame.bottom, "?");
+            svg += &lane(unknown_top, frame.bottom, "?", "not judged");
         }
         svg += &axes::x_axis(&x, &frame, &self.x_name);
         svg += &axes::y_axis(&y, &log, &self.y_name);
@@ -128,116 +138,23 @@ impl TradeOff {
                 escape(name)
             );
         }
-        svg += &curves(&spots, at);
+        let curves = curves(&spots, at);
+        svg += &curves.iter().map(draw_curve).collect::<String>();
         svg += &marks(&spots, at, &x);
-        svg += &labels(&spots, at, &frame);
+        let whiskers = spots.iter().filter_map(|spot| {
+            let (least, greatest) = spot.span.filter(|span| span.0 > 0.0)?;
+            Some([least, greatest].map(|time| [x.at(time), at(spot)[1]]))
+        });
+        let hint_y = zero_bottom - HINT[1] - 3.0;
+        let segments = curves.iter().flat_map(|curve| curve.places.windows(2));
+        let lines: Vec<[[f64; 2]; 2]> = segments
+            .map(|pair| [pair[0], pair[1]])
+            .chain(whiskers)
+            .chain([[[frame.right - HINT[0], hint_y], [frame.right, hint_y]]])
+            .collect();
+        svg += &labels(&spots, at, &lines, &frame);
         svg + "</svg>"
     }
-}
-
-fn curves(spots: &[&Spot], at: impl Fn(&Spot) -> [f64; 2]) -> String {
-    let mut svg = String::new();
-    let mut done: Vec<&str> = Vec::new();
-    for spot in spots {
-        let Some((name, _)) = &spot.curve else {
-            continue;
-        };
-        if done.contains(&name.as_str()) {
-            continue;
-        }
-        done.push(name);
-        let mut points: Vec<(f64, [f64; 2])> = spots
-            .iter()
-            .filter_map(|other| match &other.curve {
-                Some((same, value)) if same == name => Some((*value, at(other))),
-                _ => None,
-            })
-            .collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let data: Vec<String> = points
-            .iter()
-            .map(|(_, [x, y])| format!("{x:.1} {y:.1}"))
-            .collect();
-        if data.len() > 1 {
-            let classes = Look {
-                dash: 0,
-                ..spot.look
-            }
-            .classes();
-            svg += &format!(
-                "<path class=\"curve {classes}\" d=\"M{}\"/>",
-                data.join("L")
-            );
-        }
-    }
-    svg
-}
-
-fn marks(spots: &[&Spot], at: impl Fn(&Spot) -> [f64; 2], x: &LogScale) -> String {
-    let mut svg = String::new();
-    for spot in spots {
-        let [px, py] = at(spot);
-        svg += &format!(
-            "<g class=\"spot {}\" data-method=\"{}\" tabindex=\"0\"><title>{}</title>\
-             <circle class=\"hit\" cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"11\"/>",
-            spot.look.classes(),
-            escape(&spot.name),
-            escape(&spot.tip)
-        );
-        if let Some((least, greatest)) = spot.span.filter(|span| span.0 > 0.0) {
-            let [from, to] = [least, greatest].map(|time| x.at(time));
-            svg += &format!(
-                "<path class=\"whisker\" d=\"M{from:.1} {py:.1}H{to:.1}M{from:.1} {:.1}v5M{to:.1} {:.1}v5\"/>",
-                py - 2.5,
-                py - 2.5
-            );
-        }
-        svg += &spot.look.mark([px, py]);
-        svg += "</g>";
-    }
-    svg
-}
-
-fn labels(spots: &[&Spot], at: impl Fn(&Spot) -> [f64; 2], frame: &Frame) -> String {
-    let anchors: Vec<Anchor> = spots
-        .iter()
-        .map(|spot| Anchor {
-            at: at(spot),
-            text: spot.name.clone(),
-        })
-        .collect();
-    let bounds = LabelBox {
-        min: [frame.left + 2.0, frame.top - 4.0],
-        max: [frame.right, frame.bottom - 1.0],
-    };
-    let mut svg = String::new();
-    for (anchor, label) in anchors.iter().zip(place(&anchors, &bounds)) {
-        let [x, y] = anchor.at;
-        let [near_x, near_y] = label.nearest(anchor.at);
-        let name = escape(&anchor.text);
-        let (dx, dy) = (near_x - x, near_y - y);
-        let away = dx.hypot(dy);
-        if away > 11.0 {
-            // From the rim of the mark to the label.
-            let [from_x, from_y] = [x + dx / away * 6.0, y + dy / away * 6.0];
-            svg += &format!(
-                "<path class=\"leader\" data-method=\"{name}\" d=\"M{from_x:.1} {from_y:.1}L{near_x:.1} {near_y:.1}\"/>"
-            );
-        }
-        // Flush to the side of its mark, whatever the true width of the font.
-        let (text_x, side) = if label.min[0] >= x {
-            (label.min[0], "start")
-        } else if label.max[0] <= x {
-            (label.max[0], "end")
-        } else {
-            ((label.min[0] + label.max[0]) / 2.0, "middle")
-        };
-        svg += &format!(
-            "<text class=\"label\" data-method=\"{name}\" x=\"{text_x:.1}\" y=\"{:.1}\" text-anchor=\"{side}\">{name}</text>",
-            label.max[1] - GLYPH[1] * 0.24
-        );
-    }
-    svg
 }
 
 #[cfg(test)]

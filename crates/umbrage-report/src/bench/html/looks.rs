@@ -22,10 +22,10 @@ const SHAPES: [Shape; 8] = [
     Shape::Disc,
     Shape::Cross,
     Shape::Square,
-    Shape::Plus,
+    Shape::Up,
     Shape::Diamond,
     Shape::Down,
-    Shape::Up,
+    Shape::Hexagon,
     Shape::Star,
 ];
 

@@ -40,7 +40,11 @@ const TRIANGLES: Field = (number("Triangles", "", "triangles"), |row| {
     count(Some(row.triangles))
 });
 
-const FIGURES: [Field; 13] = [
+const FRAMES: Field = (number("Frames", "timed", "repeats"), |row| {
+    count(Some(u64::from(row.repeats)))
+});
+
+const FIGURES: [Field; 12] = [
     (number("Frame", "ms, median", "frame_ms"), |row| {
         time(row.frame_ms)
     }),
@@ -72,9 +76,6 @@ const FIGURES: [Field; 13] = [
     }),
     (number("Memory", "MiB, GPU", "gpu_bytes"), |row| {
         time(row.gpu_bytes.map(|bytes| bytes as f64 / (1024.0 * 1024.0)))
-    }),
-    (number("Frames", "timed", "repeats"), |row| {
-        count(Some(u64::from(row.repeats)))
     }),
 ];
 
@@ -118,6 +119,13 @@ pub(super) fn scene_table(report: &BenchReport, scene: &str, views: &[&View]) ->
         fields.push(TRIANGLES);
     }
     fields.extend(FIGURES);
+    let with_times = rows.iter().filter(|row| row.frame_ms.is_some());
+    if with_times
+        .into_iter()
+        .any(|row| row.repeats != report.repeat)
+    {
+        fields.push(FRAMES);
+    }
     if rows
         .iter()
         .any(|row| row.failed.is_some() || !row.note.is_empty())
@@ -138,6 +146,9 @@ pub(super) fn scene_table(report: &BenchReport, scene: &str, views: &[&View]) ->
             .position(|row| row.wrong == Some(0) && row.frame_ms.is_some());
         for (place, row) in of_view.into_iter().enumerate() {
             let mut line = line(row, best == Some(place));
+            if place == 0 {
+                line.classes.push("start");
+            }
             line.cells.extend(fields.iter().map(|(_, of)| of(row)));
             body.push(line);
         }
@@ -152,28 +163,28 @@ pub(super) fn scene_table(report: &BenchReport, scene: &str, views: &[&View]) ->
 /// The row with its head, marked for what it is.
 fn line(row: &BenchRow, is_best: bool) -> Row {
     let mut tags = Vec::new();
-    let mut class = "";
+    let mut classes = Vec::new();
     if row.is_floor() {
-        class = "floor";
+        classes.push("floor");
         tags.push(("", "floor".to_owned()));
     }
     if is_best {
-        class = "best";
+        classes.push("best");
         tags.push(("good", "fastest exact".to_owned()));
     }
     if breaks_promise(row) {
-        class = "broken";
+        classes.push("broken");
         tags.push(("bad", "must be 0 wrong".to_owned()));
     }
     if row.failed.is_some() {
-        class = "failed";
+        classes.push("failed");
     }
     let head = Cell {
         tags,
         ..Cell::text(&row.method)
     };
     Row {
-        class,
+        classes,
         method: row.method.clone(),
         cells: vec![head],
     }
@@ -207,7 +218,7 @@ pub(super) fn over_all_table(report: &BenchReport, all: &[OverAll]) -> String {
             None => Cell::number(NONE.to_owned(), None),
         };
         Row {
-            class: if is_best { "best" } else { "" },
+            classes: if is_best { vec!["best"] } else { vec![] },
             method: one.method.clone(),
             cells: vec![
                 Cell::text(&one.method),
@@ -251,7 +262,7 @@ mod tests {
             html.contains("<tr class=\"best\" data-method=\"counter\">"),
             "{html}"
         );
-        assert!(html.contains("<tr class=\"floor\" data-method=\"none\">"));
+        assert!(html.contains("<tr class=\"floor start\" data-method=\"none\">"));
         assert_eq!(html.matches("fastest exact").count(), 1);
     }
 
