@@ -159,8 +159,8 @@ fn inspect_counts() {
     assert!((sum - report["bytes_per_triangle"].as_f64().expect("bytes")).abs() < 1e-6);
     assert_eq!(report["memory"]["triangles"], 12.0);
     assert_eq!(report["memory"]["edges"], 8.0 * 56.0 / 32.0);
-    // 8 bytes of faces and 4 of edge number an edge, 12 of edges a triangle.
-    let face_pointers = 12.0 + 12.0 * 56.0 / 32.0;
+    // 8 bytes of faces an edge, and the triangles' edges.
+    let face_pointers = 8.0 * 56.0 / 32.0 + report["memory"]["sides"].as_f64().expect("bytes");
     assert_eq!(report["face_pointer_bytes_per_triangle"], face_pointers);
     // 4 x 4 cells of two triangles: 2 * 4 * 5 + 16 edges, of which 16 are on the border.
     assert_eq!(report["triangles"], 32);

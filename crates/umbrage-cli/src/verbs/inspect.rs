@@ -62,7 +62,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             .by_array()
             .map(|(array, bytes)| (array, per_triangle(bytes)))
             .into(),
-        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes()),
+        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes(&world)),
         lights: scene.lights.len() as u64,
         open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
@@ -102,7 +102,7 @@ fn table(report: &InspectReport) -> Table {
         bytes(&format!("  {array}"), amount);
     }
     bytes(
-        "face pointers, for sides and clusters",
+        "sides and face pointers, for sides and clusters",
         report.face_pointer_bytes_per_triangle,
     );
     let times = &report.build_ms;
