@@ -132,16 +132,20 @@ impl Crow {
     }
 
     fn sides_of(&self, chain: &[Chain], world: &World, coefficients: &[i8], quads: &mut Vec<Quad>) {
+        let mut len = quads.len();
+        let triangles: usize = chain.iter().map(Chain::len).sum();
+        // Written without a branch, kept if one is due.
+        quads.resize(len + 3 * triangles, Quad::default());
         for t in chain.iter().flat_map(Chain::triangles) {
             for u in world.edges.of_triangle(t.triangle()) {
                 let [along, against] = self.faces[u.edge() as usize];
                 let count = coefficients[along as usize] - coefficients[against as usize];
-                // Two quads are due where both cast, from opposite sides: one from each.
-                let is_face = t.triangle() == along || t.triangle() == against;
-                if is_face && count != 0 {
-                    quads.push(Quad(EdgeUse::new(u.edge(), count < 0)));
-                }
+                quads[len] = Quad(EdgeUse::new(u.edge(), count < 0));
+                // Two are due where both faces cast, from opposite sides: one from each.
+                let is_face = (t.triangle() == along) | (t.triangle() == against);
+                len += usize::from(is_face & (count != 0));
             }
         }
+        quads.truncate(len);
     }
 }
