@@ -90,7 +90,8 @@
 #![forbid(unsafe_code)]
 
 pub use umbrage_core::frame::{
-    self, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect, SkipReason, ZFailReason,
+    self, Distance, Extrusion, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect,
+    SkipReason, ZFailReason,
 };
 pub use umbrage_core::volume::{self, Construction, VolumeBuilder, Volumes};
 pub use umbrage_core::world::{

@@ -42,6 +42,7 @@ pub use crow::Crow;
 pub use facing::facing;
 pub use hidden::{HiddenScratch, drop_hidden};
 pub use plain::plain_counter;
+pub(crate) use range::SLACK;
 pub use range::{QuadRange, QuadReach, RangePrefix, range_first};
 pub use store::Version;
 pub use validate::{ClosureFault, check_closed};
