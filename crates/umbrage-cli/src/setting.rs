@@ -42,7 +42,7 @@ impl Setting {
         bar.stage(world_step(world_file), 0);
         let origin = common.world.origin.map(|point| point.0);
         let casters = common.world.casters.into();
-        let stage = Stage::with_world_file(scene, casters, origin, world_file)?;
+        let stage = Stage::with_world_file(scene, casters, origin, common.world.weld, world_file)?;
         let plain = as_materials_say(&stage);
         bar.stage("place lights", 0);
         let lights = lights(&stage, &plain, &common.world)?;

@@ -28,11 +28,13 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let world_file = args.common.world.file.as_deref();
     bar.stage(world_step(world_file), 0);
     // Every triangle counts here, whatever it casts.
-    let mesh = Mesh {
+    let mut mesh = Mesh {
         casting: casting(&scene, &soup, args.common.world.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
     };
+    mesh.weld_within(args.common.world.weld)
+        .map_err(|error| StageError::new(&scene, None, error.into()))?;
     let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
         .map_err(|error| StageError::new(&scene, world_file, error))?;
     drop(bar);
