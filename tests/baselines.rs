@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::path::Path;
+
 use common::{
     CASTERS, EXACT, Found, Site, assert_exact, by_profile, lab, point, room, skipped, staged,
 };
@@ -10,6 +12,7 @@ use glam::Vec3;
 use umbrage_core::frame::{Distance, Extrusion, LightPath, ZFailReason};
 use umbrage_core::volume::{Construction, Volumes};
 use umbrage_core::{Cull, Culls, View};
+use umbrage_lab::auto_camera::auto_camera;
 use umbrage_lab::lab::Method;
 use umbrage_lab::stage::Casters;
 
@@ -196,4 +199,34 @@ fn the_classic_breaks_where_edges_have_not_two_triangles() {
         }
     }
     assert!(wrong > 500, "{wrong}");
+}
+
+/// `UMBRAGE_SCENES=/path/to/scenes cargo test --release --test baselines -- --ignored`
+#[test]
+#[ignore = "needs UMBRAGE_SCENES, and minutes"]
+fn scene_collection() {
+    let folder = std::env::var_os("UMBRAGE_SCENES").expect("UMBRAGE_SCENES is set");
+    let files = common::glb_files(&Path::new(&folder).join("gamemaps"));
+    assert!(!files.is_empty(), "no gamemaps");
+    let size = [640, 360];
+    for path in files {
+        let site = Site::open(&path.to_string_lossy(), Casters::Both);
+        let stand = auto_camera(
+            &site.stage.mesh,
+            &common::plain(&site.lights),
+            1.0,
+            16.0 / 9.0,
+        );
+        let view = View::look_at(stand.eye, stand.target, 1.0, site.near(), size);
+        for method in EXACT {
+            for (construction, extrusion) in [
+                (Construction::Brute, Extrusion::Infinite),
+                (Construction::Counter, CORRECTED),
+            ] {
+                let way = Way::new(construction, extrusion, method);
+                let found = draw(&site, &view, way);
+                assert_exact(&format!("{}, {way:?}", path.display()), &found);
+            }
+        }
+    }
 }
