@@ -10,11 +10,11 @@ use umbrage_lab::gpu::AdapterChoice;
 
 use crate::error::CliError;
 use crate::json;
-use crate::table::Table;
 use crate::values::{
     CameraChoice, Instructions, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter,
     metres, weld,
 };
+use umbrage_report::Table;
 
 /// Exact shadows from hundreds of lights in large triangle worlds: renders them, measures them
 /// against an oracle, and says which light costs what.
@@ -204,8 +204,26 @@ pub(crate) struct Common {
     pub(crate) results: ResultArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
+    /// scene: its own lights, or 64 seeded ones where it has none; or a count with a seed to
+    /// place them by; or a JSON array of lights
+    #[arg(
+        long,
+        help_heading = "World",
+        value_name = "scene|N[:seed]|FILE.json",
+        default_value = "scene"
+    )]
+    pub(crate) lights: LightChoice,
     #[command(flatten)]
     pub(crate) view: ViewArgs,
+    /// counter: z-pass from the eye count; counter-zfail: both caps for every light; none: no
+    /// shadows
+    #[arg(
+        long,
+        help_heading = "Run",
+        value_name = "NAME",
+        default_value = "counter"
+    )]
+    pub(crate) method: Method,
     #[command(flatten)]
     pub(crate) run: RunArgs,
 }
@@ -214,10 +232,6 @@ pub(crate) struct Common {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "World")]
 pub(crate) struct WorldArgs {
-    /// scene: its own lights, or 64 seeded ones where it has none; or a count with a seed to
-    /// place them by; or a JSON array of lights
-    #[arg(long, value_name = "scene|N[:seed]|FILE.json", default_value = "scene")]
-    pub(crate) lights: LightChoice,
     /// How far lights shine. auto: each light's own range, or where it has none the distance
     /// at which it falls below 0.01 lux
     #[arg(long, value_name = "auto|METRES", default_value = "auto")]
@@ -264,10 +278,6 @@ pub(crate) struct ViewArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunArgs {
-    /// counter: z-pass from the eye count; counter-zfail: both caps for every light; none: no
-    /// shadows
-    #[arg(long, value_name = "NAME", default_value = "counter")]
-    pub(crate) method: Method,
     /// Frames that times are medians over, after one warm-up
     #[arg(long, value_name = "N", default_value = "5")]
     pub(crate) repeat: NonZeroUsize,
@@ -347,8 +357,8 @@ mod tests {
             panic!("not render")
         };
         assert_eq!(args.common.view.size, Size([1280, 720]));
-        assert_eq!(args.common.world.lights, LightChoice::Scene);
-        assert_eq!(args.common.run.method.0.name(), "counter");
+        assert_eq!(args.common.lights, LightChoice::Scene);
+        assert_eq!(args.common.method.0.name(), "counter");
         assert_eq!(args.common.run.repeat.get(), 5);
         assert_eq!(args.common.world.weld, 0.0);
         assert!(args.common.view.camera.is_none() && args.common.results.json.is_none());

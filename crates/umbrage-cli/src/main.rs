@@ -11,7 +11,6 @@ mod light_file;
 mod progress;
 mod report;
 mod setting;
-mod table;
 mod values;
 mod verbs;
 

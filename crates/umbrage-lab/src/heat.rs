@@ -9,7 +9,6 @@ use crate::gpu::GpuError;
 use crate::lab::{Lab, Method};
 use crate::light_pass::{HDR, LightDraw};
 use crate::readback::read_texture;
-use crate::run::light_pass;
 use crate::stage::{Stage, StageLight};
 
 /// What a heat map counts at each pixel.
@@ -75,10 +74,16 @@ impl Lab {
         draw: LightDraw,
     ) -> Result<Vec<f32>, GpuError> {
         let gpu = self.gpu();
-        let mut run = self.run(stage, view, draw, volume_color)?;
+        // Light fragments count wherever they are drawn, shadowed or not.
+        let technique = match draw {
+            LightDraw::Reach | LightDraw::One => Method::None,
+            _ => Method::Counter,
+        };
+        let mut run = self.run(stage, view, technique, draw, volume_color)?;
         run.shadows
             .prepare(&gpu.device, &gpu.queue, &self.frame(view))?;
-        let binding = run.light.bind(gpu, &run.shadows, lights, &run.targets);
+        let (technique, given) = run.technique(gpu, stage, lights, view, &self.plan);
+        technique.prepare(&given)?;
         let sums = texture(gpu, "counts", view.size, HDR, wgpu::TextureUsages::COPY_SRC);
         let mut encoder = gpu
             .device
@@ -86,10 +91,8 @@ impl Lab {
                 label: Some("counts"),
             });
         run.record_surface(gpu, &mut encoder, None);
-        {
-            let mut pass = light_pass(&mut encoder, &run.targets, &sums, None);
-            run.record_lights(&mut pass, &self.plan, 0..usize::MAX, &binding);
-        }
+        let (technique, given) = run.technique(gpu, stage, lights, view, &self.plan);
+        technique.record(&given, &mut encoder, 0..lights.len(), &sums)?;
         gpu.queue.submit([encoder.finish()]);
         let first = |t: &[u8]| f16::from_le_bytes([t[0], t[1]]).to_f32();
         Ok(read_texture(gpu, &sums)?

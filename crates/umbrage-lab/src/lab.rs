@@ -15,46 +15,15 @@ use umbrage_truth::{Mask, NearClip};
 
 use crate::gbuffer::{GBufferPass, Targets, texture};
 use crate::gpu::{Gpu, GpuError};
-use crate::light_pass::{LightDraw, LightPass};
+use crate::light_pass::LightDraw;
 use crate::picture::Lit;
 use crate::readback::read_texture;
-use crate::run::{Run, light_pass, read_calls};
+use crate::run::{Run, read_calls};
 use crate::stage::{Stage, StageLight};
+use crate::technique::{TechniqueReport, technique};
 use crate::timer::{StageTimes, Timer, medians, ms_since};
 
-/// How shadows are found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
-    /// Counter volumes, z-pass from the eye count, z-fail where that is ambiguous.
-    #[default]
-    Counter,
-    /// Counter volumes with both caps, z-fail for every light.
-    CounterZFail,
-    /// No shadows: the floor that every frame time is compared with.
-    None,
-}
-
-impl Method {
-    /// All of them, with their names on the command line.
-    pub const ALL: [(&'static str, Method); 3] = [
-        ("counter", Method::Counter),
-        ("counter-zfail", Method::CounterZFail),
-        ("none", Method::None),
-    ];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|(_, m)| *m == self)
-            .map_or("", |(name, _)| name)
-    }
-
-    /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure.
-    pub fn is_exact(self) -> bool {
-        self != Method::None
-    }
-}
+pub use crate::method::Method;
 
 /// A device, a stage and what is needed to draw the one on the other.
 #[derive(Debug)]
@@ -74,10 +43,15 @@ pub struct Lab {
     pub calls: Vec<LightCalls>,
     /// Bytes written for the last frame.
     pub uploaded: Uploaded,
-    /// Times of the last frame.
+    /// Times of the last frame, or medians of the last rendering.
     pub times: StageTimes,
+    /// Times of each frame of the last rendering; the first warmed up.
+    pub frames: Vec<StageTimes>,
+    /// What the technique of the last frames holds.
+    pub held: TechniqueReport,
     builder: VolumeBuilder,
     pub(crate) lights: Vec<Light>,
+    method: Method,
 }
 
 impl Lab {
@@ -93,8 +67,11 @@ impl Lab {
             calls: Vec::new(),
             uploaded: Uploaded::default(),
             times: StageTimes::default(),
+            frames: Vec::new(),
+            held: TechniqueReport::default(),
             builder: VolumeBuilder::default(),
             lights: Vec::new(),
+            method: Method::default(),
         }
     }
 
@@ -109,7 +86,8 @@ impl Lab {
         let start = Instant::now();
         self.calls.clear();
         self.lights = lights.iter().map(|l| l.light).collect();
-        if method == Method::None {
+        self.method = method;
+        if !method.has_volumes() {
             self.volumes = Volumes::empty(self.lights.len());
         } else {
             let culls = self.culls;
@@ -128,7 +106,7 @@ impl Lab {
         if method == Method::CounterZFail || !self.gpu.depth_clamp {
             options.path = PathRule::ZFailAlways;
         }
-        if method == Method::None {
+        if !method.has_volumes() {
             self.plan.unshadowed(&self.lights, view);
         } else {
             self.plan
@@ -141,6 +119,7 @@ impl Lab {
         &self,
         stage: &Stage,
         view: &View,
+        method: Method,
         draw: LightDraw,
         volume_color: VolumeColor,
     ) -> Result<Run, GpuError> {
@@ -158,12 +137,13 @@ impl Lab {
         )?;
         shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
-        let light = LightPass::new(&self.gpu, &shadows, draw);
+        let technique = technique(method, &self.gpu, &shadows, draw)?;
         Ok(Run {
             targets,
             shadows,
             surface,
-            light,
+            technique,
+            method,
             objects: stage.world.objects.iter().map(|o| o.placed).collect(),
         })
     }
@@ -178,22 +158,34 @@ impl Lab {
         method: Method,
         repeat: usize,
     ) -> Result<Lit, GpuError> {
+        self.render_while(stage, lights, view, method, |frames| frames.len() <= repeat)
+    }
+
+    /// As [`Lab::render`], with frames as long as `more`, asked after each, says that those so far
+    /// are not enough.
+    pub fn render_while(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        mut more: impl FnMut(&[StageTimes]) -> bool,
+    ) -> Result<Lit, GpuError> {
         let draw = LightDraw::Shade;
-        let mut run = self.run(stage, view, draw, VolumeColor::None)?;
+        let mut run = self.run(stage, view, method, draw, VolumeColor::None)?;
         let hdr_usage = wgpu::TextureUsages::COPY_SRC;
         let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
-        let binding = run
-            .light
-            .bind(&self.gpu, &run.shadows, lights, &run.targets);
         let timer = Timer::new(&self.gpu);
-        let mut all: Vec<StageTimes> = Vec::new();
-        for _ in 0..=repeat {
+        self.frames.clear();
+        loop {
             let start = Instant::now();
             self.prepare(stage, lights, view, method);
             let upload = Instant::now();
             self.uploaded =
                 run.shadows
                     .prepare(&self.gpu.device, &self.gpu.queue, &self.frame(view))?;
+            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            technique.prepare(&given)?;
             self.times.upload = ms_since(upload);
             let record = Instant::now();
             let mut encoder =
@@ -203,12 +195,13 @@ impl Lab {
                         label: Some("frame"),
                     });
             run.record_surface(&self.gpu, &mut encoder, timer.as_ref());
-            {
-                let writes = timer.as_ref().map(|t| t.writes(4));
-                let mut pass = light_pass(&mut encoder, &run.targets, &hdr, writes);
-                run.record_lights(&mut pass, &self.plan, 0..usize::MAX, &binding);
-            }
             if let Some(timer) = &timer {
+                timer.mark(&mut encoder, 4);
+            }
+            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            technique.record(&given, &mut encoder, 0..lights.len(), &hdr)?;
+            if let Some(timer) = &timer {
+                timer.mark(&mut encoder, 5);
                 timer.resolve(&mut encoder);
             }
             self.gpu.queue.submit([encoder.finish()]);
@@ -224,12 +217,16 @@ impl Lab {
                 self.times.gpu_receivers = receivers;
                 self.times.gpu_lights = lights;
             }
-            all.push(self.times);
+            self.frames.push(self.times);
+            if !more(&self.frames) {
+                break;
+            }
         }
-        let first = all.first().map_or(0.0, |times| times.volumes);
-        self.times = medians(&all[1.min(repeat)..]);
-        self.times.volumes_first = first;
+        let timed = usize::from(self.frames.len() > 1);
+        self.times = medians(&self.frames[timed..]);
+        self.times.volumes_first = self.frames[0].volumes;
         self.calls = read_calls(&self.gpu, &run.shadows)?;
+        self.held = run.technique.report();
         let light = read_texture(&self.gpu, &hdr)?;
         Ok(Lit {
             size: view.size,
@@ -263,9 +260,9 @@ impl Lab {
         self.mask_in(&mut run, stage, lights, view)
     }
 
-    /// What [`Lab::mask_in`] draws with, for several masks of one view's size.
+    /// What [`Lab::mask_in`] draws with, for several masks of one method and one size.
     pub fn masking(&self, stage: &Stage, view: &View) -> Result<Run, GpuError> {
-        self.run(stage, view, LightDraw::Mark, VolumeColor::None)
+        self.run(stage, view, self.method, LightDraw::Mark, VolumeColor::None)
     }
 
     /// As [`Lab::mask`], with buffers that keep what they hold from mask to mask.
@@ -280,10 +277,14 @@ impl Lab {
         if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
+        if run.method != self.method {
+            let method = self.method;
+            run.technique = technique(method, &self.gpu, &run.shadows, LightDraw::Mark)?;
+            run.method = method;
+        }
         self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
-        let binding = run
-            .light
-            .bind(&self.gpu, &run.shadows, lights, &run.targets);
+        let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+        technique.prepare(&given)?;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let layer = texture(
             &self.gpu,
@@ -303,10 +304,9 @@ impl Lab {
             if first == 0 {
                 run.record_surface(&self.gpu, &mut encoder, None);
             }
-            {
-                let mut pass = light_pass(&mut encoder, &run.targets, &layer, None);
-                run.record_lights(&mut pass, &self.plan, first..first + 32, &binding);
-            }
+            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let batch = first..lights.len().min(first + 32);
+            technique.record(&given, &mut encoder, batch, &layer)?;
             self.gpu.queue.submit([encoder.finish()]);
             let bytes = read_texture(&self.gpu, &layer)?;
             words.extend(
@@ -316,6 +316,7 @@ impl Lab {
             );
         }
         self.calls = read_calls(&self.gpu, &run.shadows)?;
+        self.held = run.technique.report();
         Ok(Mask {
             size: view.size,
             lights: lights.len() as u32,

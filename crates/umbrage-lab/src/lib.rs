@@ -8,12 +8,14 @@ pub mod gpu;
 pub mod heat;
 pub mod lab;
 pub mod light_pass;
+pub mod method;
 pub mod picture;
 pub mod readback;
 pub mod run;
 pub mod saved_world;
 pub mod seeded_lights;
 pub mod stage;
+pub mod technique;
 pub mod timer;
 
 pub use umbrage::{Cull, Culls, Uploaded};

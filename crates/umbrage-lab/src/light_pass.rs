@@ -1,4 +1,4 @@
-//! The lab's light draws: one rectangle a light, inside the stencil that its volume left.
+//! The lab's light draws: where the light reaches, lit by what the method found.
 
 use std::borrow::Cow;
 
@@ -7,9 +7,10 @@ use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer, light_wgsl};
 use wgpu::util::DeviceExt as _;
 use wgpu::{RenderPipeline, TextureFormat};
 
-use crate::gbuffer::{Targets, whole};
+use crate::gbuffer::whole;
 use crate::gpu::Gpu;
 use crate::stage::StageLight;
+use crate::technique::Given;
 
 /// Where light adds up.
 pub const HDR: TextureFormat = TextureFormat::Rgba16Float;
@@ -76,42 +77,80 @@ impl LightDraw {
             _ => HDR,
         }
     }
+
+    fn entry_point(self) -> &'static str {
+        match self {
+            LightDraw::Shade => "shade",
+            LightDraw::Mark => "mark",
+            LightDraw::Reach => "reach",
+            LightDraw::One | LightDraw::Nothing => "one",
+        }
+    }
 }
 
-/// A pipeline for one kind of light draw.
+/// What decides which of the pixels that a light reaches are lit by it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LitBy<'a> {
+    /// The stencil that the light's volume left.
+    Stencil,
+    /// Nothing: all are.
+    Everything,
+    /// A shader: `fn visibility(light: u32, pixel: vec2f) -> f32`, 0 in shadow, 1 lit, with its
+    /// resources in bind group 2. It may use what stands in `light.wgsl`.
+    Shader {
+        wgsl: &'a str,
+        layout: &'a wgpu::BindGroupLayout,
+    },
+}
+
+/// A pipeline for one kind of light draw, and what it reads in the frame at hand.
 #[derive(Debug)]
-pub struct LightPass {
+pub(crate) struct LightPass {
     pipeline: RenderPipeline,
     layout: wgpu::BindGroupLayout,
+    binding: Option<wgpu::BindGroup>,
 }
 
 impl LightPass {
-    /// Compiles it for the stencil that `shadows` leaves.
-    pub fn new(gpu: &Gpu, shadows: &ShadowRenderer, draw: LightDraw) -> Self {
+    /// Compiles it for the passes that `shadows` records into.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        shadows: &ShadowRenderer,
+        draw: LightDraw,
+        lit_by: LitBy<'_>,
+    ) -> Self {
+        let add = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let add = wgpu::BlendState {
+            color: add,
+            alpha: add,
+        };
+        let layout = bind_group_layout(gpu);
+        let (visibility, visibility_layout) = match lit_by {
+            LitBy::Shader { wgsl, layout } => (wgsl, Some(layout)),
+            _ => (ALL_VISIBLE, None),
+        };
         let placing = light_wgsl(1);
         let shading = include_str!("shaders/light.wgsl");
-        let source = format!("{CLIP_WGSL}\n{placing}\n{shading}");
+        let source = format!("{CLIP_WGSL}\n{placing}\n{shading}\n{visibility}");
         let module = gpu
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("light"),
                 source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
             });
-        let add = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
+        let depth_stencil = match lit_by {
+            LitBy::Stencil => shadows.light_depth_stencil(),
+            _ => wgpu::DepthStencilState {
+                stencil: wgpu::StencilState::default(),
+                ..shadows.light_depth_stencil()
+            },
         };
-        let mut depth_stencil = shadows.light_depth_stencil();
-        if draw == LightDraw::Reach || draw == LightDraw::One {
-            for face in [
-                &mut depth_stencil.stencil.front,
-                &mut depth_stencil.stencil.back,
-            ] {
-                face.compare = wgpu::CompareFunction::Always;
-            }
-        }
-        let layout = bind_group_layout(gpu);
+        let mut layouts = vec![Some(&layout), Some(shadows.light_bind_group_layout())];
+        layouts.extend(visibility_layout.map(Some));
         let pipeline =
             gpu.device
                 .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -119,10 +158,7 @@ impl LightPass {
                     layout: Some(&gpu.device.create_pipeline_layout(
                         &wgpu::PipelineLayoutDescriptor {
                             label: Some("light"),
-                            bind_group_layouts: &[
-                                Some(&layout),
-                                Some(shadows.light_bind_group_layout()),
-                            ],
+                            bind_group_layouts: &layouts,
                             immediate_size: 0,
                         },
                     )),
@@ -137,19 +173,11 @@ impl LightPass {
                     multisample: wgpu::MultisampleState::default(),
                     fragment: Some(wgpu::FragmentState {
                         module: &module,
-                        entry_point: Some(match draw {
-                            LightDraw::Shade => "shade",
-                            LightDraw::Mark => "mark",
-                            LightDraw::Reach => "reach",
-                            LightDraw::One | LightDraw::Nothing => "one",
-                        }),
+                        entry_point: Some(draw.entry_point()),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         targets: &[Some(wgpu::ColorTargetState {
                             format: draw.format(),
-                            blend: Some(wgpu::BlendState {
-                                color: add,
-                                alpha: add,
-                            }),
+                            blend: Some(add),
                             write_mask: match draw {
                                 LightDraw::Nothing => wgpu::ColorWrites::empty(),
                                 _ => wgpu::ColorWrites::ALL,
@@ -159,30 +187,28 @@ impl LightPass {
                     multiview_mask: None,
                     cache: None,
                 });
-        Self { pipeline, layout }
+        Self {
+            pipeline,
+            layout,
+            binding: None,
+        }
     }
 
-    /// Binds lights and surface for the frames to come.
-    pub fn bind(
-        &self,
-        gpu: &Gpu,
-        shadows: &ShadowRenderer,
-        lights: &[StageLight],
-        targets: &Targets,
-    ) -> LightBinding {
-        let mut uniforms: Vec<LightUniform> = lights.iter().map(LightUniform::from).collect();
+    /// Binds lights and surface for the frame at hand.
+    pub(crate) fn prepare(&mut self, given: &Given<'_>) {
+        let mut uniforms: Vec<LightUniform> = given.lights.iter().map(LightUniform::from).collect();
         if uniforms.is_empty() {
             uniforms.push(LightUniform::zeroed());
         }
-        let buffer = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("lights"),
-                contents: bytemuck::cast_slice(&uniforms),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
+        let device = &given.gpu.device;
+        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("lights"),
+            contents: bytemuck::cast_slice(&uniforms),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+        let targets = given.targets;
         let views = [&targets.albedo, &targets.normal, &targets.distance].map(whole);
-        let buffers = [shadows.view_buffer(), &buffer];
+        let buffers = [given.shadows.view_buffer(), &buffer];
         let resources = buffers
             .map(wgpu::Buffer::as_entire_binding)
             .into_iter()
@@ -191,31 +217,48 @@ impl LightPass {
             .zip(resources)
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
-        LightBinding(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        self.binding = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("light"),
             layout: &self.layout,
             entries: &entries,
-        }))
+        }));
     }
 
-    /// Draws light `number` over the scissor that is set.
-    pub fn draw(
+    /// Records the volumes of the plan's lights numbered `lights`, if it has any, and after each
+    /// the light. `visibility` is what the shader of [`LitBy::Shader`] reads.
+    pub(crate) fn record(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        given: &Given<'_>,
+        lights: std::ops::Range<usize>,
+        visibility: Option<&wgpu::BindGroup>,
+    ) {
+        let (shadows, plan) = (given.shadows, given.plan);
+        shadows.record(pass, plan, lights, |pass, number, _| {
+            self.draw(pass, shadows, number, visibility);
+        });
+    }
+
+    /// Draws one light over the scissor that is set.
+    pub(crate) fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         shadows: &ShadowRenderer,
-        binding: &LightBinding,
         number: usize,
+        visibility: Option<&wgpu::BindGroup>,
     ) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &binding.0, &[]);
+        pass.set_bind_group(0, self.binding.as_ref(), &[]);
         pass.set_bind_group(1, shadows.light_bind_group(), &[]);
+        if visibility.is_some() {
+            pass.set_bind_group(2, visibility, &[]);
+        }
         shadows.draw_light(pass, number);
     }
 }
 
-/// Lights and surface, bound.
-#[derive(Debug)]
-pub struct LightBinding(wgpu::BindGroup);
+/// For who leaves the decision to the stencil, or to nobody.
+const ALL_VISIBLE: &str = "fn visibility(light: u32, pixel: vec2f) -> f32 { return 1.0; }";
 
 /// View, lights, and the three textures of the surface.
 fn bind_group_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {

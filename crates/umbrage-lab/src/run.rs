@@ -1,13 +1,15 @@
-//! What a frame is drawn with, kept from frame to frame: targets, passes, the shadow renderer.
+//! What a frame is drawn with, kept from frame to frame: targets, passes, the shadow renderer, the
+//! technique.
 
 use umbrage::frame::FramePlan;
-use umbrage::{LightCalls, ShadowRenderer};
+use umbrage::{LightCalls, ShadowRenderer, View};
 
 use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
 use crate::gpu::{Gpu, GpuError};
-use crate::light_pass::{LightBinding, LightPass};
+use crate::method::Method;
 use crate::readback::read_buffer;
-use crate::stage::Stage;
+use crate::stage::{Stage, StageLight};
+use crate::technique::{Given, Technique};
 use crate::timer::Timer;
 
 /// Everything that depends on target formats or size.
@@ -16,7 +18,9 @@ pub struct Run {
     pub(crate) targets: Targets,
     pub(crate) shadows: ShadowRenderer,
     pub(crate) surface: GBufferPass,
-    pub(crate) light: LightPass,
+    pub(crate) technique: Box<dyn Technique>,
+    /// Whose technique it is.
+    pub(crate) method: Method,
     /// When each object was placed that `surface` knows.
     pub(crate) objects: Vec<u64>,
 }
@@ -43,16 +47,26 @@ impl Run {
             .find_receivers(&gpu.device, encoder, &depth, writes);
     }
 
-    pub(crate) fn record_lights(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        plan: &FramePlan,
-        lights: std::ops::Range<usize>,
-        binding: &LightBinding,
-    ) {
-        self.shadows.record(pass, plan, lights, |pass, number, _| {
-            self.light.draw(pass, &self.shadows, binding, number);
-        });
+    /// The technique, and what it is given.
+    pub(crate) fn technique<'a>(
+        &'a mut self,
+        gpu: &'a Gpu,
+        stage: &'a Stage,
+        lights: &'a [StageLight],
+        view: &'a View,
+        plan: &'a FramePlan,
+    ) -> (&'a mut dyn Technique, Given<'a>) {
+        let given = Given {
+            gpu,
+            stage,
+            lights,
+            view,
+            plan,
+            targets: &self.targets,
+            surface: &self.surface,
+            shadows: &self.shadows,
+        };
+        (&mut *self.technique, given)
     }
 }
 
@@ -79,13 +93,17 @@ pub(crate) fn read_calls(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<Ligh
     Ok(bytemuck::pod_collect_to_vec(&bytes[..whole]))
 }
 
-/// The pass in which all lights are drawn: depth is read only, the stencil is zero throughout
-/// between lights, and was cleared with the depth.
+/// A target that no light was added to yet.
+pub(crate) const FROM_DARK: wgpu::LoadOp<wgpu::Color> =
+    wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+
+/// A pass in which lights are drawn: depth is read only, the stencil is zero throughout between
+/// lights, and was cleared with the depth.
 pub(crate) fn light_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     targets: &Targets,
     color: &wgpu::Texture,
-    timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    load: wgpu::LoadOp<wgpu::Color>,
 ) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("lights"),
@@ -94,7 +112,7 @@ pub(crate) fn light_pass<'e>(
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                load,
                 store: wgpu::StoreOp::Store,
             },
         })],
@@ -106,7 +124,6 @@ pub(crate) fn light_pass<'e>(
                 store: wgpu::StoreOp::Store,
             }),
         }),
-        timestamp_writes: timestamps,
         ..wgpu::RenderPassDescriptor::default()
     })
 }

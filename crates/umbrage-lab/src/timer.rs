@@ -22,10 +22,17 @@ pub struct StageTimes {
     pub gpu_surface: f64,
     /// GPU: receivers found.
     pub gpu_receivers: f64,
-    /// GPU: volumes and lights.
+    /// GPU: shadows and lights.
     pub gpu_lights: f64,
     /// From start to the GPU's end.
     pub frame: f64,
+}
+
+impl StageTimes {
+    /// The GPU's part.
+    pub fn gpu(&self) -> f64 {
+        self.gpu_surface + self.gpu_receivers + self.gpu_lights
+    }
 }
 
 /// Begin and end of the three GPU stages.
@@ -77,6 +84,18 @@ impl Timer {
             beginning_of_pass_write_index: Some(first),
             end_of_pass_write_index: Some(first + 1),
         }
+    }
+
+    /// The time at which what was recorded so far is done, into query `index`.
+    pub(crate) fn mark(&self, encoder: &mut wgpu::CommandEncoder, index: u32) {
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("timestamp"),
+            timestamp_writes: Some(wgpu::ComputePassTimestampWrites {
+                query_set: &self.set,
+                beginning_of_pass_write_index: None,
+                end_of_pass_write_index: Some(index),
+            }),
+        });
     }
 
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {

@@ -272,6 +272,7 @@ impl ShadowRenderer {
                 _ => &self.pipelines.zfail_sides,
             };
             let reversed = &self.pipelines.zfail_reversed_caps;
+            let mut counted = false;
             for (range, pipeline, offset) in [
                 (&light.quads, sides, LightCalls::SIDES),
                 (&light.caps, &self.pipelines.zfail_caps, LightCalls::CAPS),
@@ -280,6 +281,7 @@ impl ShadowRenderer {
                 if range.is_empty() {
                     continue;
                 }
+                counted = true;
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(0, bind_group, &[]);
                 match calls {
@@ -294,7 +296,7 @@ impl ShadowRenderer {
             }
             pass.set_stencil_reference(u32::from(light.stencil_reference));
             draw_light(pass, number, light);
-            if let Some(calls) = calls {
+            if let Some(calls) = calls.filter(|_| counted) {
                 pass.set_pipeline(&self.pipelines.clean);
                 pass.set_bind_group(0, bind_group, &[]);
                 pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);

@@ -14,11 +14,11 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
 use crate::setting::{use_threads, world_step};
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, builds, counts.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    use_threads(&args.common);
+    use_threads(&args.common.run);
     let bar = Bar::new(args.common.results.quiet);
     let start = Instant::now();
     let scene = umbrage_scene::open(&args.scene, &bar)?;

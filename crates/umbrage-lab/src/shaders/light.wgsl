@@ -1,4 +1,5 @@
-// One light over its scissor; the stencil test has already decided which pixels are lit.
+// One light over its scissor. Which pixels are lit, the stencil test has decided, or
+// visibility(light, pixel) does: 0 in shadow, 1 lit. It comes with the method.
 
 struct Light {
     position: vec3f,
@@ -64,6 +65,9 @@ fn shade(in: Varying) -> @location(0) vec4f {
             strength *= edge * edge;
         }
     }
+    if strength > 0.0 {
+        strength *= visibility(in.light, in.position.xy);
+    }
     if strength <= 0.0 {
         return vec4f(0.0);
     }
@@ -100,7 +104,9 @@ fn mark(in: Varying) -> @location(0) vec4f {
     let bit = in.light & 7u;
     let byte = (in.light >> 3u) & 3u;
     var value = f32(1u << bit) / 255.0;
-    if !is_reached(lights[in.light], in.position.xy, 1.0 / 4096.0) {
+    if !is_reached(lights[in.light], in.position.xy, 1.0 / 4096.0)
+        || visibility(in.light, in.position.xy) < 0.5
+    {
         value = 0.0;
     }
     return select(vec4f(0.0), vec4f(value), vec4u(0u, 1u, 2u, 3u) == vec4u(byte));

@@ -1,0 +1,89 @@
+//! The seam between the lab's frame and the methods: one trait, one file a method in `technique/`.
+//!
+//! The lab makes ready what all methods share: the surface (depth, normal, base colour, distance),
+//! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
+//! lights and draws these lights into the target, be it light that adds up or bits of a mask.
+
+mod extrude;
+mod stencil;
+mod unshadowed;
+
+use std::fmt::Debug;
+use std::ops::Range;
+
+use umbrage::frame::FramePlan;
+use umbrage::{ShadowRenderer, View};
+
+use crate::gbuffer::{GBufferPass, Targets};
+use crate::gpu::{Gpu, GpuError};
+use crate::light_pass::LightDraw;
+use crate::method::Method;
+use crate::stage::{Stage, StageLight};
+
+use extrude::Extrude;
+use stencil::Stencil;
+use unshadowed::Unshadowed;
+
+/// What a technique is given to draw a frame with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Given<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) stage: &'a Stage,
+    pub(crate) lights: &'a [StageLight],
+    pub(crate) view: &'a View,
+    /// Where each light is drawn, and its volume if the method has volumes.
+    pub(crate) plan: &'a FramePlan,
+    /// The surface, drawn earlier in the same encoder.
+    pub(crate) targets: &'a Targets,
+    /// Draws the surface, for who needs it at another size.
+    pub(crate) surface: &'a GBufferPass,
+    /// World, view and volumes on the GPU; records lights in their scissors.
+    pub(crate) shadows: &'a ShadowRenderer,
+}
+
+/// What a technique has to say about itself.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TechniqueReport {
+    /// GPU memory of its own, in bytes: maps, masks, trees; not world and volumes.
+    pub gpu_bytes: u64,
+    /// What a reader of its figures must know; empty if nothing.
+    pub note: String,
+}
+
+/// A way of finding shadows, and of lighting by them.
+pub(crate) trait Technique: Debug {
+    /// Brings what it keeps from frame to frame up to date. Once a frame, before the first
+    /// `record`.
+    fn prepare(&mut self, _given: &Given<'_>) -> Result<(), GpuError> {
+        Ok(())
+    }
+
+    /// Records the lights numbered `lights` into `target`, cleared first, whose format is that of
+    /// the [`LightDraw`] that the technique was made for.
+    fn record(
+        &mut self,
+        given: &Given<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        lights: Range<usize>,
+        target: &wgpu::Texture,
+    ) -> Result<(), GpuError>;
+
+    /// What it holds.
+    fn report(&self) -> TechniqueReport {
+        TechniqueReport::default()
+    }
+}
+
+/// The technique behind a method, for lights drawn as `draw`.
+pub(crate) fn technique(
+    method: Method,
+    gpu: &Gpu,
+    shadows: &ShadowRenderer,
+    draw: LightDraw,
+) -> Result<Box<dyn Technique>, GpuError> {
+    Ok(match method {
+        Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::Extrude => Box::new(Extrude::new(gpu, shadows, draw)),
+        Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
+    })
+}
