@@ -20,7 +20,7 @@
 //! is the rounding of the products, some 2^-50.
 //!
 //! A shader moves vertices in f32: directions are off by at most 2^-21, which takes 2^-21 / c off the
-//! bound, and positions by 2^-22 of the distances involved. [`SLACK`] is above both for `c` of at
+//! bound, and positions by 2^-22 of the distances involved. A slack of 2^-10 is above both for `c` of at
 //! least [`LEAST_COSINE`]; an edge that subtends more, and a light that shines without end, are
 //! extruded to infinity.
 
