@@ -12,7 +12,7 @@ use crate::error::CliError;
 use crate::json;
 use crate::values::{
     CameraChoice, Instructions, LightChoice, Method, NamedCamera, NoCull, Point, RangeChoice, Size,
-    adapter, metres, ratio, seconds,
+    adapter, metres, ratio, seconds, weld,
 };
 use umbrage_report::Table;
 
@@ -336,8 +336,12 @@ pub(crate) struct WorldArgs {
     /// precision [default: near the scene]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) origin: Option<Point>,
+    /// Which vertices are one: those at the same place, or those within a tolerance, which are moved
+    /// onto each other; the oracle sees them moved
+    #[arg(long, value_name = "exact|METRES", default_value = "exact", value_parser = weld)]
+    pub(crate) weld: f32,
     /// Keep the built world in this file: saved if it does not exist, else mapped, in milliseconds.
-    /// It holds for one scene, --casters and --origin; for others it is refused
+    /// It holds for one scene, --casters, --origin and --weld; for others it is refused
     #[arg(long = "world", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
 }
@@ -448,6 +452,7 @@ mod tests {
         assert_eq!(args.common.lights, LightChoice::Scene);
         assert_eq!(args.common.method.0.name(), "counter");
         assert_eq!(args.common.run.repeat.get(), 5);
+        assert_eq!(args.common.world.weld, 0.0);
         assert!(args.common.view.camera.is_none() && args.common.results.json.is_none());
     }
 
@@ -474,6 +479,8 @@ mod tests {
             "umbrage render x.glb --heatmap overdraw",
             "umbrage render x.glb --repeat 0",
             "umbrage inspect x.glb --lights lots",
+            "umbrage inspect x.glb --weld close",
+            "umbrage inspect x.glb --weld -1",
             "umbrage gen city",
             "umbrage dance x.glb",
         ] {

@@ -58,7 +58,9 @@ pub(crate) fn stage(scene: &str, args: &WorldArgs, bar: &Bar) -> Result<Stage, C
     bar.stage(world_step(world_file), 0);
     let origin = args.origin.map(|point| point.0);
     let casters = args.casters.into();
-    Ok(Stage::with_world_file(scene, casters, origin, world_file)?)
+    Ok(Stage::with_world_file(
+        scene, casters, origin, args.weld, world_file,
+    )?)
 }
 
 /// What `--world` makes of the step to a world, for those who wait.

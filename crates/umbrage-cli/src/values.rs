@@ -243,6 +243,14 @@ pub(crate) fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
+/// `--weld`: a tolerance in metres, 0 for exact.
+pub(crate) fn weld(text: &str) -> Result<f32, String> {
+    match text {
+        "exact" => Ok(0.0),
+        _ => metres(text).map_err(|why| format!("{why}, or exact")),
+    }
+}
+
 /// `--adapter`.
 pub(crate) fn adapter(text: &str) -> Result<AdapterChoice, String> {
     match text {

@@ -72,9 +72,13 @@ fn inspect_counts() {
     assert!((sum - report["bytes_per_triangle"].as_f64().expect("bytes")).abs() < 1e-6);
     assert_eq!(report["memory"]["triangles"], 12.0);
     assert_eq!(report["memory"]["edges"], 8.0 * 56.0 / 32.0);
-    // 8 bytes of faces and 4 of edge number an edge, 12 of edges a triangle.
-    let face_pointers = 12.0 + 12.0 * 56.0 / 32.0;
+    // 8 bytes of faces an edge, and the triangles' edges.
+    let face_pointers = 8.0 * 56.0 / 32.0 + report["memory"]["sides"].as_f64().expect("bytes");
     assert_eq!(report["face_pointer_bytes_per_triangle"], face_pointers);
+    // Wider than a cell, and nothing is left.
+    let wide = json(0, &["inspect", "gen:field?n=4&lights=2", "--weld", "1e4"]);
+    assert_eq!(wide["degenerate_triangles"], 32);
+    assert_eq!(wide["welded_vertices"], 1);
     // 4 x 4 cells of two triangles: 2 * 4 * 5 + 16 edges, of which 16 are on the border.
     assert_eq!(report["triangles"], 32);
     assert_eq!(report["welded_vertices"], 25);
