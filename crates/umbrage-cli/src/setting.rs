@@ -59,7 +59,7 @@ pub(crate) fn stage(scene: &str, args: &WorldArgs, bar: &Bar) -> Result<Stage, C
     bar.stage(world_step(world_file), 0);
     let origin = args.origin.map(|point| point.0);
     let casters = args.casters.into();
-    let mut stage = Stage::with_world_file(scene, casters, origin, world_file)?;
+    let mut stage = Stage::with_world_file(scene, casters, origin, args.weld, world_file)?;
     stage.set_time(args.time)?;
     Ok(stage)
 }

@@ -5,8 +5,8 @@ use std::time::Instant;
 use glam::Vec3;
 use half::f16;
 use umbrage::frame::bounds::light_rect;
-use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
-use umbrage::volume::{VolumeBuilder, Volumes};
+use umbrage::frame::{Extrusion, FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
+use umbrage::volume::{Construction, VolumeBuilder, Volumes};
 use umbrage::{
     Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
     VolumeColor,
@@ -31,6 +31,10 @@ pub struct Lab {
     gpu: Gpu,
     /// Which steps skip work.
     pub culls: Culls,
+    /// What makes quads of chains.
+    pub construction: Construction,
+    /// Where volumes end.
+    pub extrusion: Extrusion,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -56,6 +60,8 @@ impl Lab {
         Self {
             gpu,
             culls: Culls::EVERY,
+            construction: Construction::Counter,
+            extrusion: Extrusion::Infinite,
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -88,6 +94,7 @@ impl Lab {
             let in_view =
                 |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
             self.builder.culls = culls;
+            self.builder.construction = self.construction;
             self.builder
                 .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         }
@@ -95,6 +102,7 @@ impl Lab {
         let start = Instant::now();
         let mut options = PlanOptions::default();
         options.culls = self.culls;
+        options.extrusion = self.extrusion;
         if method == Method::CounterZFail || !self.gpu.depth_clamp {
             options.path = PathRule::ZFailAlways;
         }
@@ -123,6 +131,7 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
+                extrusion: self.extrusion,
                 volume_color,
             },
         )?;

@@ -13,6 +13,8 @@ pub enum Method {
     Counter,
     /// Counter volumes with both caps, z-fail for every light.
     CounterZFail,
+    /// A static buffer extruded by the vertex shader, for closed meshes (Brennan 2002).
+    Extrude,
     /// No shadows: the floor that every frame time is compared with.
     None,
 }
@@ -27,7 +29,12 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 3] = [Method::Counter, Method::CounterZFail, Method::None];
+    pub const ALL: [Method; 4] = [
+        Method::Counter,
+        Method::CounterZFail,
+        Method::Extrude,
+        Method::None,
+    ];
 
     /// Their names.
     pub fn names() -> Vec<Cow<'static, str>> {
@@ -39,6 +46,7 @@ impl Method {
         match self {
             Method::Counter => "counter".into(),
             Method::CounterZFail => "counter-zfail".into(),
+            Method::Extrude => "extrude".into(),
             Method::None => "none".into(),
         }
     }
@@ -47,7 +55,7 @@ impl Method {
     pub fn is_exact(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::None => false,
+            Method::Extrude | Method::None => false,
         }
     }
 
@@ -55,7 +63,7 @@ impl Method {
     pub fn has_volumes(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::None => false,
+            Method::Extrude | Method::None => false,
         }
     }
 }

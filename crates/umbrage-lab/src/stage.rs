@@ -138,28 +138,39 @@ impl Stage {
     /// Flattens the scene at time zero and builds its world, with positions relative to `origin` or
     /// to the soup's own.
     pub fn new(scene: Scene, casters: Casters, origin: Option<DVec3>) -> Result<Self, StageError> {
-        Self::with_world_file(scene, casters, origin, None)
+        Self::with_world_file(scene, casters, origin, 0.0, None)
     }
 
     /// The same with the world of what never moves mapped from `world_file` where that exists, else
-    /// saved there.
+    /// saved there, and with positions of what never moves within `weld_m` of each other welded
+    /// (see [`Mesh::weld_within`]; 0 moves none).
     pub fn with_world_file(
         mut scene: Scene,
         casters: Casters,
         origin: Option<DVec3>,
+        weld_m: f32,
         world_file: Option<&Path>,
     ) -> Result<Self, StageError> {
         let posed = scene.posed(0.0);
         scene.follow(&posed);
         let mut soup = scene.soup_posed(&posed, origin)?;
         drop_blended(&scene, &mut soup);
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             positions: soup.positions.clone(),
             triangles: soup.triangles.clone(),
             casting: casting(&scene, &soup, casters),
         };
         let [vertices, fixed] = actors::fixed_part(&scene, &soup);
-        let never_moves = first(&mesh, vertices, fixed);
+        let mut never_moves = first(&mesh, vertices, fixed);
+        if weld_m != 0.0 {
+            let mut welded = never_moves.into_owned();
+            if let Err(error) = welded.weld_within(weld_m) {
+                return Err(StageError::new(&scene, None, error.into()));
+            }
+            soup.positions[..vertices].copy_from_slice(&welded.positions);
+            mesh.positions[..vertices].copy_from_slice(&welded.positions);
+            never_moves = Cow::Owned(welded);
+        }
         let mut world = match open_or_build(&never_moves, world_file) {
             Ok(found) => found.world,
             Err(error) => return Err(StageError::new(&scene, world_file, error)),

@@ -4,6 +4,7 @@
 //! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
+mod extrude;
 mod stencil;
 mod unshadowed;
 
@@ -19,7 +20,8 @@ use crate::light_pass::LightDraw;
 use crate::method::Method;
 use crate::stage::{Stage, StageLight};
 
-pub(crate) use stencil::Stencil;
+use extrude::Extrude;
+use stencil::Stencil;
 use unshadowed::Unshadowed;
 
 /// What a technique is given to draw a frame with.
@@ -81,6 +83,7 @@ pub(crate) fn technique(
 ) -> Result<Box<dyn Technique>, GpuError> {
     Ok(match method {
         Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::Extrude => Box::new(Extrude::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
 }

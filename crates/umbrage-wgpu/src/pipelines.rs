@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use umbrage_core::frame::Extrusion;
 use wgpu::{
     BindGroupLayout, CompareFunction, DepthStencilState, Device, RenderPipeline, ShaderModule,
     StencilFaceState, StencilOperation, StencilState,
@@ -81,6 +82,7 @@ fn pipeline(
         Counts::BehindReversed => (face(Keep, IncrementWrap), face(Keep, DecrementWrap)),
         Counts::Clean => (face(Zero, Zero), face(Zero, Zero)),
     };
+    let is_finite = options.extrusion != Extrusion::Infinite;
     let volume_color = match counts {
         Counts::Clean => VolumeColor::None,
         _ => options.volume_color,
@@ -128,7 +130,10 @@ fn pipeline(
         vertex: wgpu::VertexState {
             module,
             entry_point: Some(vertex_entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &[("UMBRAGE_FINITE", f64::from(u8::from(is_finite)))],
+                ..Default::default()
+            },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState {

@@ -12,7 +12,7 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{CheckReport, LightsByPath, WorstPixel};
 use crate::setting::Setting;
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, draws masks, judges them; a wrong pixel-light fails an exact method.
 pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {

@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{LightReport, PathTaken, RenderReport, RenderTotals};
 use crate::setting::Setting;
-use crate::table::{Table, grouped};
+use umbrage_report::{Table, grouped};
 
 /// Lights in the table; the JSON has all of them.
 const LISTED: usize = 12;

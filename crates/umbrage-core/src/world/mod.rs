@@ -18,6 +18,7 @@ mod planes;
 mod query;
 mod save;
 mod slots;
+mod snap;
 pub mod stages;
 mod subset;
 mod validate;
@@ -80,6 +81,12 @@ pub enum WorldError {
     NotFinite {
         /// Offending vertex.
         vertex: usize,
+    },
+    /// A tolerance that is none.
+    #[error("a weld tolerance of {tolerance_m} m: give a finite length, zero or more")]
+    Tolerance {
+        /// As given.
+        tolerance_m: f32,
     },
     /// More half edges than a u32 with a direction bit can number.
     #[error("{triangles} triangles in one world; the limit is {limit}: split it in cells")]
