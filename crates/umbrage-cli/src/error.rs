@@ -70,12 +70,6 @@ impl From<GpuError> for CliError {
     }
 }
 
-impl From<BaselineError> for CliError {
-    fn from(error: BaselineError) -> Self {
-        CliError::BadInput(error.to_string())
-    }
-}
-
 impl From<PictureError> for CliError {
     fn from(error: PictureError) -> Self {
         CliError::BadInput(error.to_string())
