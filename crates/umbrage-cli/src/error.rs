@@ -70,14 +70,14 @@ impl From<GpuError> for CliError {
     }
 }
 
-impl From<BaselineError> for CliError {
-    fn from(error: BaselineError) -> Self {
+impl From<PictureError> for CliError {
+    fn from(error: PictureError) -> Self {
         CliError::BadInput(error.to_string())
     }
 }
 
-impl From<PictureError> for CliError {
-    fn from(error: PictureError) -> Self {
+impl From<BaselineError> for CliError {
+    fn from(error: BaselineError) -> Self {
         CliError::BadInput(error.to_string())
     }
 }

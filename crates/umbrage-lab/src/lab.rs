@@ -5,8 +5,8 @@ use std::time::Instant;
 use glam::Vec3;
 use half::f16;
 use umbrage::frame::bounds::light_rect;
-use umbrage::frame::{Extrusion, FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
-use umbrage::volume::{Construction, VolumeBuilder, Volumes};
+use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
+use umbrage::volume::{VolumeBuilder, Volumes};
 use umbrage::{
     Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
     VolumeColor,
@@ -31,10 +31,6 @@ pub struct Lab {
     gpu: Gpu,
     /// Which steps skip work.
     pub culls: Culls,
-    /// What makes quads of chains.
-    pub construction: Construction,
-    /// Where volumes end.
-    pub extrusion: Extrusion,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -60,8 +56,6 @@ impl Lab {
         Self {
             gpu,
             culls: Culls::EVERY,
-            construction: Construction::Counter,
-            extrusion: Extrusion::Infinite,
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -87,31 +81,30 @@ impl Lab {
         self.calls.clear();
         self.lights = lights.iter().map(|l| l.light).collect();
         self.method = method;
-        if !method.has_volumes() {
+        let Some(recipe) = method.recipe() else {
             self.volumes = Volumes::empty(self.lights.len());
-        } else {
-            let culls = self.culls;
-            let in_view =
-                |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
-            self.builder.culls = culls;
-            self.builder.construction = self.construction;
-            self.builder
-                .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
-        }
+            self.plan.unshadowed(&self.lights, view);
+            self.times.volumes = ms_since(start);
+            self.times.plan = 0.0;
+            return;
+        };
+        let culls = self.culls;
+        let in_view = |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
+        self.builder.culls = culls;
+        self.builder.construction = recipe.construction;
+        self.builder
+            .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         self.times.volumes = ms_since(start);
         let start = Instant::now();
         let mut options = PlanOptions::default();
-        options.culls = self.culls;
-        options.extrusion = self.extrusion;
-        if method == Method::CounterZFail || !self.gpu.depth_clamp {
-            options.path = PathRule::ZFailAlways;
-        }
-        if !method.has_volumes() {
-            self.plan.unshadowed(&self.lights, view);
-        } else {
-            self.plan
-                .make(&stage.world, &self.lights, &self.volumes, view, &options);
-        }
+        options.culls = culls;
+        options.extrusion = recipe.extrusion;
+        options.path = match self.gpu.depth_clamp {
+            true => recipe.path,
+            false => PathRule::ZFailAlways,
+        };
+        self.plan
+            .make(&stage.world, &self.lights, &self.volumes, view, &options);
         self.times.plan = ms_since(start);
     }
 
@@ -131,7 +124,7 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
-                extrusion: self.extrusion,
+                extrusion: method.recipe().unwrap_or_default().extrusion,
                 volume_color,
             },
         )?;
@@ -273,16 +266,14 @@ impl Lab {
         lights: &[StageLight],
         view: &View,
     ) -> Result<Mask, GpuError> {
+        if run.method != self.method {
+            *run = self.masking(stage, view)?;
+        }
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
         run.surface.update(&self.gpu, stage);
-        if run.method != self.method {
-            let method = self.method;
-            run.technique = technique(method, &self.gpu, &run.shadows, LightDraw::Mark)?;
-            run.method = method;
-        }
         self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
         let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
         technique.prepare(&given)?;

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use thiserror::Error;
+use umbrage::frame::{Distance, Extrusion, PathRule};
+use umbrage::volume::Construction;
 
 /// How shadows are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -13,6 +15,12 @@ pub enum Method {
     Counter,
     /// Counter volumes with both caps, z-fail for every light.
     CounterZFail,
+    /// Counter volumes that end at a distance from the light.
+    CounterFinite(Distance),
+    /// Every triangle its own volume.
+    Brute,
+    /// Edges that point to two faces (Crow 1977, Bergeron 1986).
+    Crow,
     /// A static buffer extruded by the vertex shader, for closed meshes (Brennan 2002).
     Extrude,
     /// No shadows: the floor that every frame time is compared with.
@@ -29,9 +37,13 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 4] = [
+    pub const ALL: [Method; 8] = [
         Method::Counter,
         Method::CounterZFail,
+        Method::CounterFinite(Distance::Corrected),
+        Method::CounterFinite(Distance::Range),
+        Method::Brute,
+        Method::Crow,
         Method::Extrude,
         Method::None,
     ];
@@ -46,6 +58,10 @@ impl Method {
         match self {
             Method::Counter => "counter".into(),
             Method::CounterZFail => "counter-zfail".into(),
+            Method::CounterFinite(Distance::Corrected) => "counter-finite".into(),
+            Method::CounterFinite(Distance::Range) => "counter-finite-naive".into(),
+            Method::Brute => "brute".into(),
+            Method::Crow => "crow".into(),
             Method::Extrude => "extrude".into(),
             Method::None => "none".into(),
         }
@@ -54,16 +70,56 @@ impl Method {
     /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure.
     pub fn is_exact(self) -> bool {
         match self {
-            Method::Counter | Method::CounterZFail => true,
-            Method::Extrude | Method::None => false,
+            Method::Counter | Method::CounterZFail | Method::Brute => true,
+            Method::CounterFinite(distance) => distance == Distance::Corrected,
+            Method::Crow | Method::Extrude | Method::None => false,
         }
     }
 
-    /// Whether it draws shadow volumes that the CPU builds.
-    pub fn has_volumes(self) -> bool {
+    /// The volumes that the CPU builds for it, if it draws any.
+    pub fn recipe(self) -> Option<Recipe> {
+        let counter = Recipe::default();
         match self {
-            Method::Counter | Method::CounterZFail => true,
-            Method::Extrude | Method::None => false,
+            Method::Counter => Some(counter),
+            Method::CounterZFail => Some(Recipe {
+                path: PathRule::ZFailAlways,
+                ..counter
+            }),
+            Method::CounterFinite(distance) => Some(Recipe {
+                extrusion: Extrusion::Finite(distance),
+                ..counter
+            }),
+            Method::Brute => Some(Recipe {
+                construction: Construction::Brute,
+                ..counter
+            }),
+            Method::Crow => Some(Recipe {
+                construction: Construction::Crow,
+                ..counter
+            }),
+            Method::Extrude | Method::None => None,
+        }
+    }
+}
+
+/// How volumes are built and drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// What makes their quads.
+    pub construction: Construction,
+    /// Where they end.
+    pub extrusion: Extrusion,
+    /// How they are counted.
+    pub path: PathRule,
+}
+
+impl Default for Recipe {
+    /// That of [`Method::Counter`].
+    fn default() -> Self {
+        Self {
+            construction: Construction::Counter,
+            extrusion: Extrusion::Infinite,
+            path: PathRule::ZPassWhereExact,
         }
     }
 }

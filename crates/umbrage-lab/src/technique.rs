@@ -82,7 +82,11 @@ pub(crate) fn technique(
     draw: LightDraw,
 ) -> Result<Box<dyn Technique>, GpuError> {
     Ok(match method {
-        Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::Counter
+        | Method::CounterZFail
+        | Method::CounterFinite(_)
+        | Method::Brute
+        | Method::Crow => Box::new(Stencil::new(gpu, shadows, draw)),
         Method::Extrude => Box::new(Extrude::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
