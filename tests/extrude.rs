@@ -6,11 +6,12 @@ use common::room::CUBOID_FACES;
 use common::{Random, Site, by_profile, judged, lab, point, skipped, staged};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use umbrage_core::View;
-use umbrage_lab::lab::Method;
+use umbrage_lab::method::{Method, Normals};
 use umbrage_lab::stage::Casters;
 use umbrage_scene::{Instance, Mesh, Scene};
-use umbrage_truth::Judgement;
+use umbrage_truth::{Judgement, Oracle};
 
+const EXTRUDE: Method = Method::Extrude(Normals::Neighbours);
 const SIZE: [u32; 2] = [240, 135];
 
 /// The unit cube, fronts outside, with or without its last side.
@@ -37,9 +38,9 @@ fn boxes(open: bool, seed: u64) -> Site {
         ..common::scene_of("boxes", Mesh::default())
     };
     let instance = |mesh, transform| Instance {
-        name: String::new(),
         mesh,
         transform,
+        ..Instance::default()
     };
     let slab = DAffine3::from_translation(DVec3::new(0.0, -0.5, 0.0))
         * DAffine3::from_scale(DVec3::new(30.0, 1.0, 30.0));
@@ -80,7 +81,7 @@ fn closed_meshes_cast_the_oracles_shadows() {
     for seed in 0..by_profile(12, 4) {
         let site = boxes(false, seed);
         let view = site.seeded_view(seed, SIZE);
-        let (found, note) = checked(&site, &view, Method::Extrude);
+        let (found, note) = checked(&site, &view, EXTRUDE);
         assert_eq!(found.wrong, 0, "seed {seed}: {:?}", found.worst);
         assert_eq!(note, "");
         samples += found.samples;
@@ -92,8 +93,37 @@ fn closed_meshes_cast_the_oracles_shadows() {
 fn open_meshes_are_torn_and_the_note_says_so() {
     let site = boxes(true, 1);
     let view = site.look(Vec3::new(9.0, 8.0, 11.0), Vec3::ZERO, SIZE);
-    let (found, note) = checked(&site, &view, Method::Extrude);
+    let (found, note) = checked(&site, &view, EXTRUDE);
     assert!(found.wrong > 100, "{}", found.wrong);
     assert!(note.contains("160 of"), "{note}");
     assert_eq!(checked(&site, &view, Method::Counter).0.wrong, 0);
+}
+
+/// Normals found anew follow the skin; normals at rest, turned, do not quite.
+#[test]
+fn a_walking_mans_normals() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/actors/cesium_man.glb");
+    let mut site = Site::open(path, Casters::Both);
+    let mut random = Random(8);
+    site.lights = staged((0..8).map(|_| {
+        let at = random.point(Vec3::new(-2.0, 0.2, -2.0), Vec3::new(2.0, 2.5, 2.0));
+        point(at, 6.0)
+    }));
+    let view = site.look(Vec3::new(1.2, 1.4, 2.0), Vec3::new(0.0, 0.8, 0.0), SIZE);
+    let normals = [
+        Normals::Neighbours,
+        Normals::FaceWeights,
+        Normals::VertexWeights,
+    ];
+    let mut wrong = [0; 3];
+    for time_s in [0.3, 0.9, 1.4] {
+        site.stage.set_time(time_s).expect("a pose");
+        site.oracle = Oracle::new(&site.stage.mesh);
+        for (sum, normals) in wrong.iter_mut().zip(normals) {
+            *sum += checked(&site, &view, Method::Extrude(normals)).0.wrong;
+        }
+    }
+    let [neighbours, face, vertex] = wrong;
+    assert!(neighbours * 10 < face.min(vertex), "{wrong:?}");
+    assert!(face.min(vertex) > 20, "{wrong:?}");
 }

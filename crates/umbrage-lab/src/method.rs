@@ -22,9 +22,20 @@ pub enum Method {
     /// Edges that point to two faces (Crow 1977, Bergeron 1986).
     Crow,
     /// A static buffer extruded by the vertex shader, for closed meshes (Brennan 2002).
-    Extrude,
+    Extrude(Normals),
     /// No shadows: the floor that every frame time is compared with.
     None,
+}
+
+/// Where the face normals of skinned characters come from; others find them anew always.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Normals {
+    /// The posed positions of the face's corners.
+    Neighbours,
+    /// The normal at rest, turned by the weights of the face.
+    FaceWeights,
+    /// The same, turned by the weights of each vertex.
+    VertexWeights,
 }
 
 /// A name that is no method's.
@@ -37,14 +48,16 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 8] = [
+    pub const ALL: [Method; 10] = [
         Method::Counter,
         Method::CounterZFail,
         Method::CounterFinite(Distance::Corrected),
         Method::CounterFinite(Distance::Range),
         Method::Brute,
         Method::Crow,
-        Method::Extrude,
+        Method::Extrude(Normals::Neighbours),
+        Method::Extrude(Normals::FaceWeights),
+        Method::Extrude(Normals::VertexWeights),
         Method::None,
     ];
 
@@ -62,7 +75,9 @@ impl Method {
             Method::CounterFinite(Distance::Range) => "counter-finite-naive".into(),
             Method::Brute => "brute".into(),
             Method::Crow => "crow".into(),
-            Method::Extrude => "extrude".into(),
+            Method::Extrude(Normals::Neighbours) => "extrude".into(),
+            Method::Extrude(Normals::FaceWeights) => "extrude-face-weights".into(),
+            Method::Extrude(Normals::VertexWeights) => "extrude-vertex-weights".into(),
             Method::None => "none".into(),
         }
     }
@@ -72,7 +87,7 @@ impl Method {
         match self {
             Method::Counter | Method::CounterZFail | Method::Brute => true,
             Method::CounterFinite(distance) => distance == Distance::Corrected,
-            Method::Crow | Method::Extrude | Method::None => false,
+            Method::Crow | Method::Extrude(_) | Method::None => false,
         }
     }
 
@@ -97,7 +112,7 @@ impl Method {
                 construction: Construction::Crow,
                 ..counter
             }),
-            Method::Extrude | Method::None => None,
+            Method::Extrude(_) | Method::None => None,
         }
     }
 }

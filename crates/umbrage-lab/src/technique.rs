@@ -87,7 +87,7 @@ pub(crate) fn technique(
         | Method::CounterFinite(_)
         | Method::Brute
         | Method::Crow => Box::new(Stencil::new(gpu, shadows, draw)),
-        Method::Extrude => Box::new(Extrude::new(gpu, shadows, draw)),
+        Method::Extrude(normals) => Box::new(Extrude::new(gpu, shadows, draw, normals)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
 }

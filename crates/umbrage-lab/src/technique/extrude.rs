@@ -14,6 +14,13 @@
 //! is torn there: such edges are counted, and the note says so. A shell that is closed around its
 //! lights, as the rooms of most game maps are, faces them all over and so has no dark cap: its own
 //! walls come out in shadow.
+//!
+//! A triangle's normal is found anew from its posed corners: the article's better variant for skinned
+//! characters, and the one for what stands still. The two cheaper ones turn the normal at rest by the
+//! weights of each vertex (the corners of a triangle may then disagree, and it is torn), or of the
+//! face.
+
+mod skin;
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -28,6 +35,7 @@ use super::{Given, Technique, TechniqueReport};
 use crate::gbuffer::DEPTH_STENCIL;
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
+use crate::method::Normals;
 use crate::run::{FROM_DARK, light_pass};
 use crate::stage::Stage;
 
@@ -39,6 +47,7 @@ pub(crate) struct Extrude {
     sides: wgpu::RenderPipeline,
     clean: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
+    normals: Normals,
     buffers: Option<Buffers>,
     bind_group: Option<wgpu::BindGroup>,
 }
@@ -47,6 +56,7 @@ pub(crate) struct Extrude {
 #[derive(Debug)]
 struct Buffers {
     corners: wgpu::Buffer,
+    skin: wgpu::Buffer,
     meshes: Vec<ClosedMesh>,
     edges: usize,
     unpaired: usize,
@@ -73,9 +83,22 @@ enum Triangles {
 }
 
 impl Extrude {
-    pub(crate) fn new(gpu: &Gpu, shadows: &ShadowRenderer, draw: LightDraw) -> Self {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        shadows: &ShadowRenderer,
+        draw: LightDraw,
+        normals: Normals,
+    ) -> Self {
         let device = &gpu.device;
         let layout = layout(device);
+        let constants = [(
+            "normals",
+            match normals {
+                Normals::Neighbours => 0.0,
+                Normals::FaceWeights => 1.0,
+                Normals::VertexWeights => 2.0,
+            },
+        )];
         let source = format!("{CLIP_WGSL}\n{}", include_str!("../shaders/extrude.wgsl"));
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("extrude"),
@@ -94,7 +117,10 @@ impl Extrude {
                 vertex: wgpu::VertexState {
                     module: &module,
                     entry_point: Some(entry),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &constants,
+                        ..wgpu::PipelineCompilationOptions::default()
+                    },
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState {
@@ -145,6 +171,7 @@ impl Extrude {
             sides: pipeline("extrude sides", "side", behind),
             clean: pipeline("clean", "everywhere", stencil([Zero, Zero], Zero)),
             layout,
+            normals,
             buffers: None,
             bind_group: None,
         }
@@ -158,12 +185,15 @@ impl Technique for Extrude {
         let world = &given.stage.world;
         let objects: Vec<u64> = world.objects.iter().map(|o| o.placed).collect();
         if self.buffers.as_ref().is_none_or(|b| b.objects != objects) {
-            self.buffers = Some(Buffers::new(device, given.stage, objects));
+            self.buffers = Some(Buffers::new(device, given.stage, objects, self.normals));
         }
         let (positions, triangles) = given
             .shadows
             .world_buffers()
             .ok_or(umbrage::RenderError::NoWorld)?;
+        let Some(Buffers { skin: at_rest, .. }) = &self.buffers else {
+            return Ok(());
+        };
         let mut lights: Vec<[f32; 4]> =
             given.lights.iter().map(|l| l.light.homogeneous()).collect();
         lights.resize(lights.len().max(1), [0.0; 4]);
@@ -172,7 +202,20 @@ impl Technique for Extrude {
             contents: bytemuck::cast_slice(&lights),
             usage: wgpu::BufferUsages::STORAGE,
         });
-        let buffers = [given.shadows.view_buffer(), positions, triangles, &lights];
+        let joints = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("joints"),
+            contents: bytemuck::cast_slice(&skin::matrices(given.stage)),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+        let first = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("first skinned corner"),
+            contents: bytemuck::bytes_of(&[skin::first_corner(world); 4]),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let view = given.shadows.view_buffer();
+        let buffers = [
+            view, &first, positions, triangles, &lights, at_rest, &joints,
+        ];
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -233,7 +276,7 @@ impl Technique for Extrude {
         };
         let (edges, unpaired) = (buffers.edges, buffers.unpaired);
         TechniqueReport {
-            gpu_bytes: buffers.corners.size(),
+            gpu_bytes: buffers.corners.size() + buffers.skin.size(),
             note: match unpaired {
                 0 => String::new(),
                 _ => format!("not closed: {unpaired} of {edges} edges have no partner"),
@@ -259,7 +302,7 @@ fn reaches(light: &Light, [min, max]: [Vec3; 2]) -> bool {
 }
 
 impl Buffers {
-    fn new(device: &wgpu::Device, stage: &Stage, objects: Vec<u64>) -> Self {
+    fn new(device: &wgpu::Device, stage: &Stage, objects: Vec<u64>, normals: Normals) -> Self {
         let world = &stage.world;
         let mut meshes = Vec::new();
         let mut corners = Vec::new();
@@ -299,6 +342,11 @@ impl Buffers {
                 label: Some("extrude corners"),
                 contents: bytemuck::cast_slice(&corners),
                 usage: wgpu::BufferUsages::INDEX,
+            }),
+            skin: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("skinned normals"),
+                contents: bytemuck::cast_slice(&skin::corners(stage, normals)),
+                usage: wgpu::BufferUsages::STORAGE,
             }),
             meshes,
             edges,
@@ -350,7 +398,10 @@ fn close(world: &World, of: &[u32], corners: &mut Vec<u32>) -> Pairing {
 
 fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let types = [wgpu::BufferBindingType::Uniform, storage, storage, storage];
+    let uniform = wgpu::BufferBindingType::Uniform;
+    let types = [
+        uniform, uniform, storage, storage, storage, storage, storage,
+    ];
     let entries: Vec<_> = (0..)
         .zip(types)
         .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
