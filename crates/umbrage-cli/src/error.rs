@@ -5,6 +5,7 @@ use std::path::Path;
 
 use thiserror::Error;
 use umbrage_core::world::SavedWorldError;
+use umbrage_lab::application::NoMask;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
 use umbrage_lab::stage::StageError;
@@ -66,6 +67,12 @@ impl From<GpuError> for CliError {
             GpuError::NoAdapter { .. } => CliError::NoAdapter(error.to_string()),
             _ => CliError::BadInput(error.to_string()),
         }
+    }
+}
+
+impl From<NoMask> for CliError {
+    fn from(error: NoMask) -> Self {
+        CliError::BadInput(error.to_string())
     }
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Setting {
 impl Setting {
     /// Loads `scene` and settles casters, lights and view.
     pub(crate) fn new(scene: &str, common: &Common) -> Result<Self, CliError> {
+        let run = &common.run;
+        run.method.0.check(run.shadows.into())?;
         use_threads(common);
         let bar = Bar::new(common.results.quiet);
         let scene = umbrage_scene::open(scene, &bar)?;

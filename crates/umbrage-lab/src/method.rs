@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use crate::application::{Application, NoMask};
+
 /// How shadows are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
@@ -13,8 +15,71 @@ pub enum Method {
     Counter,
     /// Counter volumes with both caps, z-fail for every light.
     CounterZFail,
+    /// Counter volumes counted by doubling and halving a mask instead of the stencil.
+    Mask(MaskBuffer),
+    /// Counter volumes counted at a lower resolution, the mask applied with bilinear filtering.
+    LowResolution {
+        /// What they are counted in.
+        of: Counting,
+        /// How much lower.
+        divisor: Divisor,
+    },
     /// No shadows: the floor that every frame time is compared with.
     None,
+}
+
+/// What counts volumes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Counting {
+    /// The stencil.
+    Stencil,
+    /// A mask that is doubled and halved.
+    Mask(MaskBuffer),
+}
+
+/// Where a mask is doubled and halved, and how it is normalised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MaskBuffer {
+    /// In eight bits of its own, where three values stand for no layer, one, and more; normalised by
+    /// three rectangles.
+    Screen,
+    /// In the alpha channel that lights add up beside, a float; normalised by three rectangles.
+    Alpha,
+    /// The same halved and doubled, normalised by one rectangle with the maximum blend equation.
+    Max,
+}
+
+impl MaskBuffer {
+    /// The layers that it can count up to before the values run out.
+    pub fn layers(self) -> u32 {
+        match self {
+            // 1/4, 1/2, 1.
+            MaskBuffer::Screen => 2,
+            // From 1/2 to 2^15: the next power of two is no half float.
+            MaskBuffer::Alpha => 16,
+            // From 1 to 2^-14: the next power of two is a half float, but not a normal one.
+            MaskBuffer::Max => 14,
+        }
+    }
+}
+
+/// By what the sides of the picture are divided, rounded up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Divisor {
+    /// By two.
+    Half,
+    /// By four.
+    Quarter,
+}
+
+impl Divisor {
+    /// Pixels a texel of the mask is wide and high.
+    pub fn pixels(self) -> u32 {
+        match self {
+            Divisor::Half => 2,
+            Divisor::Quarter => 4,
+        }
+    }
 }
 
 /// A name that is no method's.
@@ -27,7 +92,26 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 3] = [Method::Counter, Method::CounterZFail, Method::None];
+    pub const ALL: [Method; 14] = [
+        Method::Counter,
+        Method::CounterZFail,
+        Method::Mask(MaskBuffer::Screen),
+        Method::Mask(MaskBuffer::Alpha),
+        Method::Mask(MaskBuffer::Max),
+        Self::low(Counting::Stencil, Divisor::Half),
+        Self::low(Counting::Stencil, Divisor::Quarter),
+        Self::low(Counting::Mask(MaskBuffer::Screen), Divisor::Half),
+        Self::low(Counting::Mask(MaskBuffer::Screen), Divisor::Quarter),
+        Self::low(Counting::Mask(MaskBuffer::Alpha), Divisor::Half),
+        Self::low(Counting::Mask(MaskBuffer::Alpha), Divisor::Quarter),
+        Self::low(Counting::Mask(MaskBuffer::Max), Divisor::Half),
+        Self::low(Counting::Mask(MaskBuffer::Max), Divisor::Quarter),
+        Method::None,
+    ];
+
+    const fn low(of: Counting, divisor: Divisor) -> Self {
+        Method::LowResolution { of, divisor }
+    }
 
     /// Their names.
     pub fn names() -> Vec<Cow<'static, str>> {
@@ -39,22 +123,61 @@ impl Method {
         match self {
             Method::Counter => "counter".into(),
             Method::CounterZFail => "counter-zfail".into(),
+            Method::Mask(MaskBuffer::Screen) => "mask-screen".into(),
+            Method::Mask(MaskBuffer::Alpha) => "mask-alpha".into(),
+            Method::Mask(MaskBuffer::Max) => "mask-max".into(),
+            Method::LowResolution { of, divisor } => {
+                let divisor = match divisor {
+                    Divisor::Half => "half",
+                    Divisor::Quarter => "quarter",
+                };
+                match of {
+                    Counting::Stencil => divisor.into(),
+                    Counting::Mask(buffer) => {
+                        format!("{}-{divisor}", Method::Mask(buffer).name()).into()
+                    }
+                }
+            }
             Method::None => "none".into(),
         }
     }
 
-    /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure.
+    /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure. A mask does so
+    /// only where it can represent the layers: see [`Method::layers`].
     pub fn is_exact(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::None => false,
+            Method::Mask(_) | Method::LowResolution { .. } | Method::None => false,
+        }
+    }
+
+    /// The most layers that its mask can represent on the way to a count, where it has a mask at
+    /// full resolution.
+    pub fn layers(self) -> Option<u32> {
+        match self {
+            Method::Mask(buffer) => Some(buffer.layers()),
+            _ => None,
+        }
+    }
+
+    /// Whether it can leave this much of a light in its shadow.
+    pub fn check(self, application: Application) -> Result<(), NoMask> {
+        match (self, application) {
+            (Method::Mask(_) | Method::LowResolution { .. }, _) | (_, Application::Black) => Ok(()),
+            (method, application) => Err(NoMask {
+                method,
+                application,
+            }),
         }
     }
 
     /// Whether it draws shadow volumes that the CPU builds.
     pub fn has_volumes(self) -> bool {
         match self {
-            Method::Counter | Method::CounterZFail => true,
+            Method::Counter
+            | Method::CounterZFail
+            | Method::Mask(_)
+            | Method::LowResolution { .. } => true,
             Method::None => false,
         }
     }
@@ -65,7 +188,11 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         let mut all = Self::ALL.into_iter();
-        all.find(|method| method.name() == name)
+        // "counter-half" says "half" in full.
+        let short = name.strip_prefix("counter-");
+        let short = short.filter(|rest| ["half", "quarter"].contains(rest));
+        let wanted = short.unwrap_or(name);
+        all.find(|method| method.name() == wanted)
             .ok_or_else(|| UnknownMethod { name: name.into() })
     }
 }
@@ -81,5 +208,26 @@ mod tests {
         }
         let refused = "stencil".parse::<Method>().unwrap_err().to_string();
         assert!(refused.contains("counter-zfail"), "{refused}");
+    }
+
+    #[test]
+    fn the_counter_at_a_lower_resolution_has_two_names() {
+        assert_eq!("counter-half".parse::<Method>(), "half".parse());
+        assert_eq!("counter-quarter".parse::<Method>(), "quarter".parse());
+        assert!("counter-counter".parse::<Method>().is_err());
+    }
+
+    #[test]
+    fn only_masks_leave_light_in_the_shadow() {
+        for method in Method::ALL {
+            let name = method.name();
+            let masked = name.contains("mask") || name.contains("half") || name.contains("quarter");
+            assert!(method.check(Application::Black).is_ok());
+            for application in [Application::Ambient, Application::Attenuated] {
+                assert_eq!(method.check(application).is_ok(), masked, "{name}");
+            }
+        }
+        let refused = Method::Counter.check(Application::Ambient).unwrap_err();
+        assert!(refused.to_string().contains("mask-alpha"), "{refused}");
     }
 }

@@ -16,6 +16,17 @@ pub(crate) struct Pipelines {
     pub(crate) zfail_caps: RenderPipeline,
     pub(crate) zfail_reversed_caps: RenderPipeline,
     pub(crate) clean: RenderPipeline,
+    pub(crate) shared: Shared,
+}
+
+/// What all pipelines of volumes are made from.
+#[derive(Debug)]
+pub(crate) struct Shared {
+    pub(crate) module: ShaderModule,
+    pub(crate) layout: wgpu::PipelineLayout,
+    pub(crate) depth_stencil_format: wgpu::TextureFormat,
+    pub(crate) sample_count: u32,
+    pub(crate) depth_clamp: bool,
 }
 
 /// When a side or cap counts.
@@ -55,6 +66,13 @@ impl Pipelines {
             zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind),
             zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed),
             clean: build("umbrage clean", "everywhere", Counts::Clean),
+            shared: Shared {
+                module,
+                layout,
+                depth_stencil_format: options.depth_stencil_format,
+                sample_count: options.sample_count,
+                depth_clamp: options.depth_clamp,
+            },
         }
     }
 }
