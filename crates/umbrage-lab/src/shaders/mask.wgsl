@@ -12,42 +12,43 @@ struct Slot {
 
 struct Varying {
     @builtin(position) position: vec4f,
-    @location(0) @interpolate(flat) light: u32,
-}
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
-    return Varying(umbrage_light_corner(index, light), light);
+    @location(0) @interpolate(flat) color: vec4f,
 }
 
 // `value` in the light's channel, `other` elsewhere.
-fn chosen(light: u32, value: f32, other: f32) -> vec4f {
+fn rectangle(index: u32, light: u32, value: f32, other: f32) -> Varying {
     let is_ours = vec4u(0u, 1u, 2u, 3u) == vec4u(slots[light].channel);
-    return select(vec4f(other), vec4f(value), is_ours);
+    let color = select(vec4f(other), vec4f(value), is_ours);
+    return Varying(umbrage_light_corner(index, light), color);
+}
+
+@vertex
+fn start(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
+    return rectangle(index, light, slots[light].start, 1.0);
+}
+
+@vertex
+fn one(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
+    return rectangle(index, light, 1.0, 0.0);
+}
+
+@vertex
+fn half_of_one(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
+    return rectangle(index, light, 0.5, 0.0);
+}
+
+// Other channels are below the largest half float.
+@vertex
+fn at_most_one(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
+    return rectangle(index, light, 1.0, 65504.0);
+}
+
+@vertex
+fn dark(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
+    return rectangle(index, light, slots[light].dark, 1.0);
 }
 
 @fragment
-fn start(in: Varying) -> @location(0) vec4f {
-    return chosen(in.light, slots[in.light].start, 1.0);
-}
-
-@fragment
-fn one(in: Varying) -> @location(0) vec4f {
-    return chosen(in.light, 1.0, 0.0);
-}
-
-@fragment
-fn half_of_one(in: Varying) -> @location(0) vec4f {
-    return chosen(in.light, 0.5, 0.0);
-}
-
-// Others are below the largest half float.
-@fragment
-fn at_most_one(in: Varying) -> @location(0) vec4f {
-    return chosen(in.light, 1.0, 65504.0);
-}
-
-@fragment
-fn dark(in: Varying) -> @location(0) vec4f {
-    return chosen(in.light, slots[in.light].dark, 1.0);
+fn fragment(in: Varying) -> @location(0) vec4f {
+    return in.color;
 }
