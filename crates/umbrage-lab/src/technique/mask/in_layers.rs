@@ -25,7 +25,7 @@ use crate::run::{FROM_DARK, light_pass};
 use crate::technique::{Given, Technique, TechniqueReport};
 
 /// The most that a stack of layers takes, one layer apart.
-const BUDGET_BYTES: u64 = 32 << 20;
+const BUDGET_BYTES: u64 = 16 << 20;
 
 /// Layers are plenty beyond this many.
 const MOST_LAYERS: u64 = 32;
