@@ -116,8 +116,8 @@ pub(crate) struct InspectReport {
     pub(crate) bytes_per_triangle: f64,
     /// `bytes_per_triangle` by array of the world.
     pub(crate) memory: BTreeMap<&'static str, f64>,
-    /// What edges that point to their faces take where `sides` and `clusters` stand here, a
-    /// triangle.
+    /// What edges that point to their faces take, with the `sides` that they need too, where
+    /// `sides` and `clusters` stand here, a triangle.
     pub(crate) face_pointer_bytes_per_triangle: f64,
     /// That the scene brings itself.
     pub(crate) lights: u64,

@@ -5,8 +5,8 @@ use std::time::Instant;
 use glam::Vec3;
 use half::f16;
 use umbrage::frame::bounds::light_rect;
-use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
-use umbrage::volume::{VolumeBuilder, Volumes};
+use umbrage::frame::{Extrusion, FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
+use umbrage::volume::{Construction, VolumeBuilder, Volumes};
 use umbrage::{
     Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
     VolumeColor,
@@ -34,6 +34,10 @@ pub struct Lab {
     pub culls: Culls,
     /// What masks leave of a light in its shadow.
     pub application: Application,
+    /// What makes quads of chains.
+    pub construction: Construction,
+    /// Where volumes end.
+    pub extrusion: Extrusion,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -42,8 +46,10 @@ pub struct Lab {
     pub calls: Vec<LightCalls>,
     /// Bytes written for the last frame.
     pub uploaded: Uploaded,
-    /// Times of the last frame.
+    /// Times of the last frame, or medians of the last rendering.
     pub times: StageTimes,
+    /// Times of each frame of the last rendering; the first warmed up.
+    pub frames: Vec<StageTimes>,
     /// What the technique of the last frames holds.
     pub held: TechniqueReport,
     builder: VolumeBuilder,
@@ -58,11 +64,14 @@ impl Lab {
             gpu,
             culls: Culls::EVERY,
             application: Application::default(),
+            construction: Construction::Counter,
+            extrusion: Extrusion::Infinite,
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
             uploaded: Uploaded::default(),
             times: StageTimes::default(),
+            frames: Vec::new(),
             held: TechniqueReport::default(),
             builder: VolumeBuilder::default(),
             lights: Vec::new(),
@@ -89,6 +98,7 @@ impl Lab {
             let in_view =
                 |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
             self.builder.culls = culls;
+            self.builder.construction = self.construction;
             self.builder
                 .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         }
@@ -96,6 +106,7 @@ impl Lab {
         let start = Instant::now();
         let mut options = PlanOptions::default();
         options.culls = self.culls;
+        options.extrusion = self.extrusion;
         if method == Method::CounterZFail || !self.gpu.depth_clamp {
             options.path = PathRule::ZFailAlways;
         }
@@ -124,6 +135,7 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
+                extrusion: self.extrusion,
                 volume_color,
             },
         )?;
@@ -155,13 +167,26 @@ impl Lab {
         method: Method,
         repeat: usize,
     ) -> Result<Lit, GpuError> {
+        self.render_while(stage, lights, view, method, |frames| frames.len() <= repeat)
+    }
+
+    /// As [`Lab::render`], with frames as long as `more`, asked after each, says that those so far
+    /// are not enough.
+    pub fn render_while(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        mut more: impl FnMut(&[StageTimes]) -> bool,
+    ) -> Result<Lit, GpuError> {
         let draw = LightDraw::Shade;
         let mut run = self.run(stage, view, method, draw, VolumeColor::None)?;
         let hdr_usage = wgpu::TextureUsages::COPY_SRC;
         let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
         let timer = Timer::new(&self.gpu);
-        let mut all: Vec<StageTimes> = Vec::new();
-        for _ in 0..=repeat {
+        self.frames.clear();
+        loop {
             let start = Instant::now();
             self.prepare(stage, lights, view, method);
             let upload = Instant::now();
@@ -201,11 +226,14 @@ impl Lab {
                 self.times.gpu_receivers = receivers;
                 self.times.gpu_lights = lights;
             }
-            all.push(self.times);
+            self.frames.push(self.times);
+            if !more(&self.frames) {
+                break;
+            }
         }
-        let first = all.first().map_or(0.0, |times| times.volumes);
-        self.times = medians(&all[1.min(repeat)..]);
-        self.times.volumes_first = first;
+        let timed = usize::from(self.frames.len() > 1);
+        self.times = medians(&self.frames[timed..]);
+        self.times.volumes_first = self.frames[0].volumes;
         self.calls = read_calls(&self.gpu, &run.shadows)?;
         self.held = run.technique.report();
         let light = read_texture(&self.gpu, &hdr)?;

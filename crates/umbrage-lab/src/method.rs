@@ -24,6 +24,8 @@ pub enum Method {
         /// How much lower.
         divisor: Divisor,
     },
+    /// A static buffer extruded by the vertex shader, for closed meshes (Brennan 2002).
+    Extrude,
     /// No shadows: the floor that every frame time is compared with.
     None,
 }
@@ -92,7 +94,7 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 14] = [
+    pub const ALL: [Method; 15] = [
         Method::Counter,
         Method::CounterZFail,
         Method::Mask(MaskBuffer::Screen),
@@ -106,6 +108,7 @@ impl Method {
         Self::low(Counting::Mask(MaskBuffer::Alpha), Divisor::Quarter),
         Self::low(Counting::Mask(MaskBuffer::Max), Divisor::Half),
         Self::low(Counting::Mask(MaskBuffer::Max), Divisor::Quarter),
+        Method::Extrude,
         Method::None,
     ];
 
@@ -138,6 +141,7 @@ impl Method {
                     }
                 }
             }
+            Method::Extrude => "extrude".into(),
             Method::None => "none".into(),
         }
     }
@@ -147,7 +151,9 @@ impl Method {
     pub fn is_exact(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::Mask(_) | Method::LowResolution { .. } | Method::None => false,
+            Method::Mask(_) | Method::LowResolution { .. } | Method::Extrude | Method::None => {
+                false
+            }
         }
     }
 
@@ -178,7 +184,7 @@ impl Method {
             | Method::CounterZFail
             | Method::Mask(_)
             | Method::LowResolution { .. } => true,
-            Method::None => false,
+            Method::Extrude | Method::None => false,
         }
     }
 }

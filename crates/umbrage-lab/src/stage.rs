@@ -111,23 +111,31 @@ impl Stage {
     /// Flattens the scene and builds its world, with positions relative to `origin` or to the
     /// soup's own.
     pub fn new(scene: Scene, casters: Casters, origin: Option<DVec3>) -> Result<Self, StageError> {
-        Self::with_world_file(scene, casters, origin, None)
+        Self::with_world_file(scene, casters, origin, 0.0, None)
     }
 
-    /// The same with the world mapped from `world_file` where that exists, else saved there.
+    /// The same with the world mapped from `world_file` where that exists, else saved there, and
+    /// with positions within `weld_m` of each other welded (see [`Mesh::weld_within`]; 0 moves
+    /// none).
     pub fn with_world_file(
         scene: Scene,
         casters: Casters,
         origin: Option<DVec3>,
+        weld_m: f32,
         world_file: Option<&Path>,
     ) -> Result<Self, StageError> {
         let mut soup = scene.soup_at(origin)?;
         drop_blended(&scene, &mut soup);
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             positions: soup.positions.clone(),
             triangles: soup.triangles.clone(),
             casting: casting(&scene, &soup, casters),
         };
+        match mesh.weld_within(weld_m) {
+            Ok(0) => {}
+            Ok(_) => soup.positions.clone_from(&mesh.positions),
+            Err(error) => return Err(StageError::new(&scene, None, error.into())),
+        }
         let world = match open_or_build(&mesh, world_file) {
             Ok(found) => found.world,
             Err(error) => return Err(StageError::new(&scene, world_file, error)),

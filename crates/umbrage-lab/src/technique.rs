@@ -4,6 +4,7 @@
 //! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
+mod extrude;
 mod mask;
 mod stencil;
 mod unshadowed;
@@ -21,9 +22,10 @@ use crate::light_pass::LightDraw;
 use crate::method::{Counting, MaskBuffer, Method};
 use crate::stage::{Stage, StageLight};
 
+use extrude::Extrude;
 pub(crate) use mask::Overflow;
 use mask::{InFrame, InLayers};
-pub(crate) use stencil::Stencil;
+use stencil::Stencil;
 use unshadowed::Unshadowed;
 
 /// What a technique is given to draw a frame with.
@@ -101,6 +103,7 @@ pub(crate) fn technique(
             let pixels = divisor.pixels();
             Box::new(InLayers::new(gpu, shadows, draw, of, application, pixels)?)
         }
+        Method::Extrude => Box::new(Extrude::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
 }

@@ -105,7 +105,10 @@ fn pipeline(
         vertex: wgpu::VertexState {
             module: &shared.module,
             entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &Shared::constants(shared.extrusion),
+                ..Default::default()
+            },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState {

@@ -2,7 +2,7 @@
 
 use umbrage_core::Light;
 use umbrage_core::cull::Cull;
-use umbrage_core::frame::{FramePlan, LightPath, LightPlan};
+use umbrage_core::frame::{Extrusion, FramePlan, LightPath, LightPlan};
 use umbrage_core::volume::Version;
 use umbrage_core::world::World;
 use wgpu::{
@@ -37,6 +37,9 @@ pub struct ShadowRenderer {
     quads_version: Version,
     caps: Growing,
     lights: Growing,
+    /// How far each is extruded; unused if the renderer was made for infinite volumes.
+    distances: Growing,
+    extrusion: Extrusion,
     light_count: u32,
     world: WorldBuffers,
     /// With all quads, and with those that the receivers keep.
@@ -82,6 +85,8 @@ impl ShadowRenderer {
             quads_version: Version::default(),
             caps: growing("umbrage caps"),
             lights: growing("umbrage lights"),
+            distances: growing("umbrage distances"),
+            extrusion: options.extrusion,
             light_count: 0,
             world: WorldBuffers::new(device),
             bind_groups: None,
@@ -143,6 +148,11 @@ impl ShadowRenderer {
         volumes += self.caps.write(device, queue, caps)?;
         let points = bytemuck::cast_slice(&homogeneous);
         let mut others = self.lights.write(device, queue, points)?;
+        if self.extrusion != Extrusion::Infinite {
+            let distances: Vec<f32> = frame.plan.lights.iter().map(shader_distance).collect();
+            let distances = bytemuck::cast_slice(&distances);
+            others += self.distances.write(device, queue, distances)?;
+        }
         let asked = frame.culls.has(Cull::Receivers) || frame.culls.has(Cull::Quads);
         if let Some(receivers) = self.receivers.as_mut().filter(|_| asked) {
             others += receivers.prepare(device, queue, frame)?;
@@ -168,8 +178,11 @@ impl ShadowRenderer {
 
     fn bind(&self, device: &Device, quads: &Buffer) -> BindGroup {
         let [positions, edges, triangles] = self.world.buffers();
-        let (caps, lights) = (&self.caps.buffer, &self.lights.buffer);
-        let buffers = [&self.view, positions, edges, triangles, quads, caps, lights];
+        let [caps, lights, distances] =
+            [&self.caps, &self.lights, &self.distances].map(|growing| &growing.buffer);
+        let buffers = [
+            &self.view, positions, edges, triangles, quads, caps, lights, distances,
+        ];
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -379,8 +392,16 @@ impl ShadowRenderer {
     }
 }
 
+/// As the volume shader takes it: 0 for infinity, which WGSL does not promise to keep.
+fn shader_distance(light: &LightPlan) -> f32 {
+    match light.extrusion_m.is_finite() {
+        true => light.extrusion_m,
+        false => 0.0,
+    }
+}
+
 fn bind_group_layout(device: &Device) -> BindGroupLayout {
-    uniform_and_storage(device, "umbrage volume", ShaderStages::VERTEX, 6)
+    uniform_and_storage(device, "umbrage volume", ShaderStages::VERTEX, 7)
 }
 
 fn light_layout(device: &Device) -> BindGroupLayout {

@@ -90,9 +90,10 @@
 #![forbid(unsafe_code)]
 
 pub use umbrage_core::frame::{
-    self, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect, SkipReason, ZFailReason,
+    self, Distance, Extrusion, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect,
+    SkipReason, ZFailReason,
 };
-pub use umbrage_core::volume::{self, VolumeBuilder, Volumes};
+pub use umbrage_core::volume::{self, Construction, VolumeBuilder, Volumes};
 pub use umbrage_core::world::{
     self, ObjectError, ObjectId, Pose, SavedWorldError, World, WorldError, WorldReport,
 };

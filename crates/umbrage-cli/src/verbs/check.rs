@@ -12,14 +12,14 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{CheckReport, LightsByPath, WorstPixel};
 use crate::setting::Setting;
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, draws masks, judges them; a wrong pixel-light fails an exact method.
 pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
     let setting = Setting::new(&args.scene, &args.common)?;
     let report = check(&setting, args)?;
     args.common.results.show(&table(&report), &report)?;
-    if report.wrong > 0 && args.common.run.method.0.is_exact() {
+    if report.wrong > 0 && args.common.method.0.is_exact() {
         let (wrong, samples) = (report.wrong, report.samples);
         return Err(CliError::CheckFailed(format!(
             "{wrong} of {samples} pixel-lights are wrong"
@@ -36,7 +36,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         view,
     } = setting;
     let run = &args.common.run;
-    let method = run.method.0;
+    let method = args.common.method.0;
     let bar = Bar::new(args.common.results.quiet);
     bar.stage("open adapter", 0);
     let mut lab = Lab::new(Gpu::open(&run.adapter)?);

@@ -14,11 +14,11 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
 use crate::setting::{use_threads, world_step};
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, builds, counts.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    use_threads(&args.common);
+    use_threads(&args.common.run);
     let bar = Bar::new(args.common.results.quiet);
     let start = Instant::now();
     let scene = umbrage_scene::open(&args.scene, &bar)?;
@@ -28,11 +28,13 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let world_file = args.common.world.file.as_deref();
     bar.stage(world_step(world_file), 0);
     // Every triangle counts here, whatever it casts.
-    let mesh = Mesh {
+    let mut mesh = Mesh {
         casting: casting(&scene, &soup, args.common.world.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
     };
+    mesh.weld_within(args.common.world.weld)
+        .map_err(|error| StageError::new(&scene, None, error.into()))?;
     let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
         .map_err(|error| StageError::new(&scene, world_file, error))?;
     drop(bar);
@@ -62,7 +64,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             .by_array()
             .map(|(array, bytes)| (array, per_triangle(bytes)))
             .into(),
-        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes()),
+        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes(&world)),
         lights: scene.lights.len() as u64,
         open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
@@ -102,7 +104,7 @@ fn table(report: &InspectReport) -> Table {
         bytes(&format!("  {array}"), amount);
     }
     bytes(
-        "face pointers, for sides and clusters",
+        "sides and face pointers, for sides and clusters",
         report.face_pointer_bytes_per_triangle,
     );
     let times = &report.build_ms;

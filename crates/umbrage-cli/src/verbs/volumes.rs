@@ -19,7 +19,7 @@ use crate::args::VolumesArgs;
 use crate::error::CliError;
 use crate::report::{VolumesLight, VolumesMethod, VolumesReport};
 use crate::setting::Setting;
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Scratch that all methods share.
 #[derive(Default)]

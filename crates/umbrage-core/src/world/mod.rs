@@ -16,6 +16,7 @@ mod objects;
 mod planes;
 mod query;
 mod save;
+mod snap;
 pub mod stages;
 mod subset;
 mod validate;
@@ -78,6 +79,12 @@ pub enum WorldError {
     NotFinite {
         /// Offending vertex.
         vertex: usize,
+    },
+    /// A tolerance that is none.
+    #[error("a weld tolerance of {tolerance_m} m: give a finite length, zero or more")]
+    Tolerance {
+        /// As given.
+        tolerance_m: f32,
     },
     /// More half edges than a u32 with a direction bit can number.
     #[error("{triangles} triangles in one world; the limit is {limit}: split it in cells")]

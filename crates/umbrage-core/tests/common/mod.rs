@@ -76,6 +76,32 @@ pub(crate) fn grid(n: i32) -> Mesh {
     mesh
 }
 
+/// A closed ring of n x n cells around the y axis, wound outward, with the rule on every triangle:
+/// not convex, so that it hides parts of itself.
+pub(crate) fn torus(n: u32, rule: Casting) -> Mesh {
+    let angle = |i: u32| std::f32::consts::TAU * i as f32 / n as f32;
+    let vertex = |i: u32, j: u32| {
+        let (around, across) = (angle(i), angle(j));
+        let radius = 1.0 + 0.4 * across.cos();
+        Vec3::new(
+            radius * around.cos(),
+            0.4 * across.sin(),
+            radius * around.sin(),
+        )
+    };
+    let mut mesh = Mesh::default();
+    for i in 0..n {
+        mesh.positions.extend((0..n).map(|j| vertex(i, j)));
+        for j in 0..n {
+            let at = |di: u32, dj: u32| (i + di) % n * n + (j + dj) % n;
+            mesh.triangles.push([at(0, 0), at(0, 1), at(1, 1)]);
+            mesh.triangles.push([at(0, 0), at(1, 1), at(1, 0)]);
+        }
+    }
+    mesh.casting = vec![rule; mesh.triangles.len()];
+    mesh
+}
+
 pub(crate) fn point_light(position: Vec3, range: f32) -> Light {
     Light {
         position,

@@ -6,7 +6,9 @@
 //! Scissors are a texel wider than a light's own, since filtering looks one texel aside.
 
 use umbrage::frame::bounds::light_rect;
-use umbrage::{Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, View, VolumeColor};
+use umbrage::{
+    Extrusion, Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, View, VolumeColor,
+};
 
 use crate::gbuffer::{DEPTH_STENCIL, Targets, depth_only};
 use crate::gpu::{Gpu, GpuError};
@@ -35,6 +37,7 @@ impl LowFrame {
             depth_stencil_format: DEPTH_STENCIL,
             sample_count: 1,
             depth_clamp: gpu.depth_clamp,
+            extrusion: Extrusion::Infinite,
             volume_color: VolumeColor::None,
         };
         Ok(Self {
