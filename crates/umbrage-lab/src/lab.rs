@@ -141,7 +141,8 @@ impl Lab {
         )?;
         shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
-        // What a mask leaves in the shadow is for pictures; whether a pixel is lit does not depend on it.
+        // What a mask leaves in the shadow is for pictures; whether a pixel is lit does not hang
+        // on it.
         let application = match draw {
             LightDraw::Shade => self.application,
             _ => Application::Black,

@@ -2,9 +2,9 @@
 //! lights in one pass.
 //!
 //! A light's mask starts over the last one's, is counted and normalised in alpha, and the light is
-//! drawn with blend factors (destination alpha, one). The target is a half float. Masks for the judge
-//! are drawn by the same steps; their bits add up beside alpha in a target of their own, from which
-//! they are copied.
+//! drawn with blend factors (destination alpha, one). The target is a half float. Masks for the
+//! judge are drawn by the same steps; their bits add up beside alpha in a target of their own, from
+//! which they are copied.
 
 use std::ops::Range;
 

@@ -3,8 +3,8 @@
 //! A batch of lights is placed in the channels of a stack of layers; layer by layer their masks are
 //! made and normalised, then the batch's lights are drawn, each multiplied by its mask. At full
 //! resolution a light reads the texel of its pixel; else masks are filtered bilinearly, and nothing
-//! knows about depth: a mask bleeds over edges of the surface by up to a texel, as the paper's does.
-//! What lies outside a light's rows of texels is lit.
+//! knows about depth: a mask bleeds over edges of the surface by up to a texel, as the paper's
+//! does. What lies outside a light's rows of texels is lit.
 
 use std::ops::Range;
 
@@ -15,6 +15,7 @@ use super::low::{LowFrame, area, low_size};
 use super::pack::{Placed, pack};
 use super::painter::Painter;
 use super::plan::{MaskPlan, Place};
+use super::reading::MaskReading;
 use super::slots::Slot;
 use crate::application::Application;
 use crate::gbuffer::whole;
@@ -275,77 +276,4 @@ fn mask_pass<'e>(
         }),
         ..wgpu::RenderPassDescriptor::default()
     })
-}
-
-/// How lights read their masks.
-#[derive(Debug)]
-struct MaskReading {
-    layout: wgpu::BindGroupLayout,
-    sampler: wgpu::Sampler,
-}
-
-impl MaskReading {
-    fn new(gpu: &Gpu) -> Self {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let slots = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        Self {
-            layout: gpu
-                .device
-                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                    label: Some("masks"),
-                    entries: &[entry(0, texture), entry(1, sampler), entry(2, slots)],
-                }),
-            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("masks"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..wgpu::SamplerDescriptor::default()
-            }),
-        }
-    }
-
-    /// The shader's part for masks at full resolution, or at a lower one.
-    fn wgsl(divisor: u32) -> String {
-        let read = match divisor {
-            1 => "textureLoad(masks, vec2i(pixel), slot.layer, 0)",
-            _ => "textureSampleLevel(masks, mask_sampler, uv, slot.layer, 0.0)",
-        };
-        include_str!("../../shaders/mask_reading.wgsl").replace("READ_MASKS", read)
-    }
-
-    fn bind(&self, gpu: &Gpu, masks: &wgpu::Texture, slots: &wgpu::Buffer) -> wgpu::BindGroup {
-        let view = masks.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..wgpu::TextureViewDescriptor::default()
-        });
-        let resources = [
-            wgpu::BindingResource::TextureView(&view),
-            wgpu::BindingResource::Sampler(&self.sampler),
-            slots.as_entire_binding(),
-        ];
-        let entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("masks"),
-            layout: &self.layout,
-            entries: &entries,
-        })
-    }
 }

@@ -1,9 +1,9 @@
 //! The frame once more at a lower resolution: depth, receivers and volumes, for masks that are
 //! counted there.
 //!
-//! Same eye and frustum, so that what is uploaded differs in the size alone; the last column and row
-//! of texels are as wide and high as the others, and cover less where the division leaves a rest.
-//! Scissors are a texel wider than a light's own, since filtering looks one texel aside.
+//! Same eye and frustum, so that what is uploaded differs in the size alone; the last column and
+//! row of texels are as wide and high as the others, and cover less where the division leaves a
+//! rest. Scissors are a texel wider than a light's own, since filtering looks one texel aside.
 
 use umbrage::frame::bounds::light_rect;
 use umbrage::{

@@ -1,9 +1,9 @@
 //! Not a method, but what is to be known about some: the pixel-lights whose layers a mask cannot
 //! represent, as bits of a mask. Drawn by `check`, never in a timed frame.
 //!
-//! A mask counts up before it counts down, from the eye count n by one a raising face, and the values
-//! run out where n and the faces that raise exceed its layers. They are counted in the stencil, with the
-//! very draws that the mask has.
+//! A mask counts up before it counts down, from the eye count n by one a raising face, and the
+//! values run out where n and the faces that raise exceed its layers. They are counted in the
+//! stencil, with the very draws that the mask has.
 
 use std::ops::Range;
 

@@ -1,13 +1,13 @@
-//! What is drawn for one light, step by step, as plain data: the recorders execute it, and its passes
-//! are those of the paper's table 1.
+//! What is drawn for one light, step by step, as plain data: the recorders execute it, and its
+//! passes are those of the paper's table 1.
 //!
 //! The paper renders a scene in passes; a deferred renderer draws the surface once, and each light
 //! reads it. They map so:
 //! - the scene's first pass, which lays depth: [`Step::Surface`], once for all lights;
 //! - alpha buffer: the rectangle that multiplies the scene by alpha: [`Step::Light`], the light's
 //!   one draw, blended with factors (destination alpha, one);
-//! - screen buffer: the second pass of the scene, multiplied with the mask: [`Step::Light`] too, which
-//!   reads the mask as a texture;
+//! - screen buffer: the second pass of the scene, multiplied with the mask: [`Step::Light`] too,
+//!   which reads the mask as a texture;
 //! - the pass that adds an ambient term: [`Step::Ambient`], a draw for each light.
 
 use crate::application::Application;
@@ -59,8 +59,8 @@ pub(crate) enum Rectangle {
     /// One less twice what is missing to 1: from half and one to nothing and one. No step of the
     /// paper, whose masks by maximum attenuate and no more.
     Stretch,
-    /// Times the application's share, where the stencil says shadow. No step of the paper, in which a
-    /// stencil stays at full resolution.
+    /// Times the application's share, where the stencil says shadow. No step of the paper, in which
+    /// a stencil stays at full resolution.
     Darken,
 }
 
@@ -133,8 +133,8 @@ impl MaskPlan {
         f32::min(lit * 2f32.powi(power), self.most())
     }
 
-    /// What halving multiplies by. A half is no number of eight bits; 128 of 255 leads 255, 128 and 64
-    /// into each other whichever way products are rounded.
+    /// What halving multiplies by. A half is no number of eight bits; 128 of 255 leads 255, 128 and
+    /// 64 into each other whichever way products are rounded.
     pub(crate) fn half(self) -> f64 {
         match self.of {
             Counting::Mask(MaskBuffer::Screen) => 128.0 / 255.0,
