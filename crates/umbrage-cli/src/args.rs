@@ -8,11 +8,12 @@ use serde::Serialize;
 use umbrage_lab::Culls;
 use umbrage_lab::gpu::AdapterChoice;
 
+use crate::actor::ActorChoice;
 use crate::error::CliError;
 use crate::json;
 use crate::values::{
     CameraChoice, Instructions, LightChoice, Method, NamedCamera, NoCull, Point, RangeChoice, Size,
-    adapter, metres, ratio, seconds, weld,
+    adapter, metres, ratio, seconds, time, weld,
 };
 use umbrage_report::Table;
 
@@ -72,6 +73,8 @@ Examples:
       256 lights placed by seed 7, seen from (4, 2, 8) towards (0, 1, 0)
   umbrage render map.glb --world map.world -o map.png
       The first run saves the built world, the next ones map it
+  umbrage render map.glb --actor 'man.glb?at=3,0,-2&turn=90&speed=1.2' --time 2.5 -o walk.png
+      A man set down at (3, 0, -2), facing +X, and three metres on from there
   umbrage render map.glb --heatmap overdraw -o heat.png --json - | jq .totals
       Where the fill goes, and the totals of the frame
   umbrage render map.glb --method none -o lit.png --json floor.json
@@ -104,7 +107,8 @@ const INSPECT_EXAMPLES: &str = "\
 Nothing that is counted here is an error: open edges, edges of many triangles, opposite
 winding, degenerate and duplicate triangles all cast exact shadows.
 
-Blended triangles count too, so a scene with some needs a --world file of its own here.
+Blended triangles and what moves count too, so a scene with some needs a --world file of its own
+here.
 
 Examples:
   umbrage inspect map.glb
@@ -349,9 +353,22 @@ pub(crate) struct WorldArgs {
     #[arg(long, value_name = "exact|METRES", default_value = "exact", value_parser = weld)]
     pub(crate) weld: f32,
     /// Keep the built world in this file: saved if it does not exist, else mapped, in milliseconds.
-    /// It holds for one scene, --casters, --origin and --weld; for others it is refused
+    /// It holds for one scene, --casters, --origin and --weld; for others it is refused. What moves
+    /// is not in it
     #[arg(long = "world", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
+    /// Place a second file in the scene, once or many times: it stands at=X,Y,Z, turned about +Y by
+    /// turn=DEGREES, scale=S times its size, and walks along its own heading (+Z before the turn)
+    /// at speed=METRES a second; it plays its first animation. Its lights and cameras are left out
+    #[arg(
+        long = "actor",
+        value_name = "FILE?at=X,Y,Z&turn=DEG&scale=S&speed=M_PER_S"
+    )]
+    pub(crate) actors: Vec<ActorChoice>,
+    /// When: everything animated, and every --actor, is posed as it is this many seconds on.
+    /// Animations loop
+    #[arg(long, value_name = "SECONDS", default_value = "0", allow_hyphen_values = true, value_parser = time)]
+    pub(crate) time: f64,
 }
 
 /// Where the eye is.

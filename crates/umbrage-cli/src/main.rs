@@ -4,6 +4,7 @@
 //! 3 no usable adapter. Each verb has its file in `verbs/`.
 #![forbid(unsafe_code)]
 
+mod actor;
 mod args;
 mod error;
 mod json;

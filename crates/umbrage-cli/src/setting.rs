@@ -13,6 +13,7 @@ use umbrage_lab::seeded_lights::seeded_lights;
 use umbrage_lab::stage::{Stage, StageLight};
 use umbrage_scene::{Camera, Progress};
 
+use crate::actor;
 use crate::args::{Common, RunArgs, WorldArgs};
 use crate::error::CliError;
 use crate::light_file;
@@ -52,16 +53,16 @@ impl Setting {
     }
 }
 
-/// Loads a scene and builds its world.
+/// Loads a scene with its actors, builds its world, and poses everything.
 pub(crate) fn stage(scene: &str, args: &WorldArgs, bar: &Bar) -> Result<Stage, CliError> {
-    let scene = umbrage_scene::open(scene, bar)?;
+    let scene = actor::open(scene, &args.actors, bar)?;
     let world_file = args.file.as_deref();
     bar.stage(world_step(world_file), 0);
     let origin = args.origin.map(|point| point.0);
     let casters = args.casters.into();
-    Ok(Stage::with_world_file(
-        scene, casters, origin, args.weld, world_file,
-    )?)
+    let mut stage = Stage::with_world_file(scene, casters, origin, args.weld, world_file)?;
+    stage.set_time(args.time)?;
+    Ok(stage)
 }
 
 /// What `--world` makes of the step to a world, for those who wait.
@@ -83,20 +84,22 @@ pub(crate) fn use_threads(run: &RunArgs) {
     }
 }
 
-/// The mesh with the casting rules of its materials: what is inside and outside does not depend
-/// on `--casters`, so neither do seeded lights nor the automatic camera.
+/// The scenery with the casting rules of its materials: what is inside and outside depends neither
+/// on `--casters` nor on `--time`, so neither do seeded lights nor the automatic camera.
 fn as_materials_say(stage: &Stage) -> Cow<'_, Mesh> {
     let rule = |&m: &u32| match stage.scene.materials[m as usize].double_sided {
         true => Casting::Both,
         false => Casting::Front,
     };
-    let casting: Vec<Casting> = stage.soup.material.iter().map(rule).collect();
-    if casting == stage.mesh.casting {
-        return Cow::Borrowed(&stage.mesh);
+    let mesh = stage.scenery();
+    let materials = stage.soup.material.iter().take(mesh.triangles.len());
+    let casting: Vec<Casting> = materials.map(rule).collect();
+    if casting == mesh.casting {
+        return mesh;
     }
     Cow::Owned(Mesh {
         casting,
-        ..stage.mesh.clone()
+        ..mesh.into_owned()
     })
 }
 
@@ -187,7 +190,8 @@ pub(crate) fn view(
     let near = near
         .or(camera.near.map(|near| near as f32))
         .filter(|near| *near > 0.0);
-    let near = near.unwrap_or_else(|| (1e-4 * diagonal(&stage.mesh)).clamp(f32::MIN_POSITIVE, 0.1));
+    let near =
+        near.unwrap_or_else(|| (1e-4 * diagonal(&stage.scenery())).clamp(f32::MIN_POSITIVE, 0.1));
     Ok(to_view(&camera, stage.local(camera.position), near, size))
 }
 

@@ -227,6 +227,14 @@ pub(crate) fn metres(text: &str) -> Result<f32, String> {
     }
 }
 
+/// `--time`, in seconds.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(time) if time.is_finite() => Ok(time),
+        _ => Err("expected a time in seconds, as in 2.5".to_owned()),
+    }
+}
+
 /// `--ratio`.
 pub(crate) fn ratio(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -340,3 +340,47 @@ fn volumes_compares_methods_and_instructions() {
     }
     refused(2, &["volumes", SOUP, "--instructions", "sse"]);
 }
+
+#[test]
+fn actors_stand_in_a_scene_and_walk_with_time() {
+    let man = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/actors/cesium_man.glb"
+    );
+    let field = "gen:field?n=8&lights=3";
+    let actor = format!("{man}?at=0,1,0&turn=45&speed=0.5");
+    let placed = |verb: &str, time: &str| {
+        let common = ["--actor", &actor, "--time", time];
+        json(0, &[&[verb, field][..], &common].concat())
+    };
+    let alone = json(0, &["inspect", field]);
+    let both = placed("inspect", "0");
+    let more = both["triangles"].as_u64().unwrap() - alone["triangles"].as_u64().unwrap();
+    assert_eq!(more, 4672);
+    assert_ne!(
+        placed("volumes", "0")["methods"][0]["quads"],
+        placed("volumes", "1.3")["methods"][0]["quads"]
+    );
+    let size = ["--size", "64x48", "--actor", &actor, "--time", "0.7"];
+    let report = json(0, &[&["check", field][..], &size].concat());
+    assert_eq!(report["wrong"], 0);
+    // The world of what never moves is one file, whatever walks through it.
+    let folder = Folder::new("actors");
+    let file = folder.path("field.world");
+    for extra in [
+        &[][..],
+        &["--actor", &actor],
+        &["--actor", &actor, "--time", "9"],
+    ] {
+        let common = ["--world", &file, "--size", "32x32", "--repeat", "1"];
+        json(0, &[&["render", field][..], &common, extra].concat());
+    }
+    for (option, value, said) in [
+        ("--actor", "man.glb?size=2", "known are at=X,Y,Z"),
+        ("--actor", "nowhere.glb", "nowhere.glb"),
+        ("--time", "noon", "expected a time in seconds"),
+    ] {
+        let error = refused(2, &["render", field, option, value]);
+        assert!(error.contains(said), "{error}");
+    }
+}

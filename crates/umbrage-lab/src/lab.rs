@@ -5,8 +5,8 @@ use std::time::Instant;
 use glam::Vec3;
 use half::f16;
 use umbrage::frame::bounds::light_rect;
-use umbrage::frame::{Extrusion, FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
-use umbrage::volume::{Construction, VolumeBuilder, Volumes};
+use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
+use umbrage::volume::{VolumeBuilder, Volumes};
 use umbrage::{
     Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
     VolumeColor,
@@ -34,10 +34,6 @@ pub struct Lab {
     pub culls: Culls,
     /// What masks leave of a light in its shadow.
     pub application: Application,
-    /// What makes quads of chains.
-    pub construction: Construction,
-    /// Where volumes end.
-    pub extrusion: Extrusion,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -64,8 +60,6 @@ impl Lab {
             gpu,
             culls: Culls::EVERY,
             application: Application::default(),
-            construction: Construction::Counter,
-            extrusion: Extrusion::Infinite,
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -91,31 +85,30 @@ impl Lab {
         self.calls.clear();
         self.lights = lights.iter().map(|l| l.light).collect();
         self.method = method;
-        if !method.has_volumes() {
+        let Some(recipe) = method.recipe() else {
             self.volumes = Volumes::empty(self.lights.len());
-        } else {
-            let culls = self.culls;
-            let in_view =
-                |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
-            self.builder.culls = culls;
-            self.builder.construction = self.construction;
-            self.builder
-                .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
-        }
+            self.plan.unshadowed(&self.lights, view);
+            self.times.volumes = ms_since(start);
+            self.times.plan = 0.0;
+            return;
+        };
+        let culls = self.culls;
+        let in_view = |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
+        self.builder.culls = culls;
+        self.builder.construction = recipe.construction;
+        self.builder
+            .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         self.times.volumes = ms_since(start);
         let start = Instant::now();
         let mut options = PlanOptions::default();
-        options.culls = self.culls;
-        options.extrusion = self.extrusion;
-        if method == Method::CounterZFail || !self.gpu.depth_clamp {
-            options.path = PathRule::ZFailAlways;
-        }
-        if !method.has_volumes() {
-            self.plan.unshadowed(&self.lights, view);
-        } else {
-            self.plan
-                .make(&stage.world, &self.lights, &self.volumes, view, &options);
-        }
+        options.culls = culls;
+        options.extrusion = recipe.extrusion;
+        options.path = match self.gpu.depth_clamp {
+            true => recipe.path,
+            false => PathRule::ZFailAlways,
+        };
+        self.plan
+            .make(&stage.world, &self.lights, &self.volumes, view, &options);
         self.times.plan = ms_since(start);
     }
 
@@ -135,7 +128,7 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
-                extrusion: self.extrusion,
+                extrusion: method.recipe().unwrap_or_default().extrusion,
                 volume_color,
             },
         )?;
@@ -300,16 +293,14 @@ impl Lab {
         lights: &[StageLight],
         view: &View,
     ) -> Result<Mask, GpuError> {
+        if run.method != self.method {
+            *run = self.masking(stage, view)?;
+        }
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
-        if run.method != self.method {
-            let method = self.method;
-            let (black, draw) = (Application::Black, LightDraw::Mark);
-            run.technique = technique(method, black, &self.gpu, &run.shadows, draw)?;
-            run.method = method;
-        }
+        run.surface.update(&self.gpu, stage);
         self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
         let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
         technique.prepare(&given)?;

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use thiserror::Error;
+use umbrage::frame::{Distance, Extrusion, PathRule};
+use umbrage::volume::Construction;
 
 use crate::application::{Application, NoMask};
 
@@ -15,6 +17,12 @@ pub enum Method {
     Counter,
     /// Counter volumes with both caps, z-fail for every light.
     CounterZFail,
+    /// Counter volumes that end at a distance from the light.
+    CounterFinite(Distance),
+    /// Every triangle its own volume.
+    Brute,
+    /// Edges that point to two faces (Crow 1977, Bergeron 1986).
+    Crow,
     /// Counter volumes counted by doubling and halving a mask instead of the stencil.
     Mask(MaskBuffer),
     /// Counter volumes counted at a lower resolution, the mask applied with bilinear filtering.
@@ -94,9 +102,13 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 15] = [
+    pub const ALL: [Method; 19] = [
         Method::Counter,
         Method::CounterZFail,
+        Method::CounterFinite(Distance::Corrected),
+        Method::CounterFinite(Distance::Range),
+        Method::Brute,
+        Method::Crow,
         Method::Mask(MaskBuffer::Screen),
         Method::Mask(MaskBuffer::Alpha),
         Method::Mask(MaskBuffer::Max),
@@ -126,6 +138,10 @@ impl Method {
         match self {
             Method::Counter => "counter".into(),
             Method::CounterZFail => "counter-zfail".into(),
+            Method::CounterFinite(Distance::Corrected) => "counter-finite".into(),
+            Method::CounterFinite(Distance::Range) => "counter-finite-naive".into(),
+            Method::Brute => "brute".into(),
+            Method::Crow => "crow".into(),
             Method::Mask(MaskBuffer::Screen) => "mask-screen".into(),
             Method::Mask(MaskBuffer::Alpha) => "mask-alpha".into(),
             Method::Mask(MaskBuffer::Max) => "mask-max".into(),
@@ -150,10 +166,13 @@ impl Method {
     /// only where it can represent the layers: see [`Method::layers`].
     pub fn is_exact(self) -> bool {
         match self {
-            Method::Counter | Method::CounterZFail => true,
-            Method::Mask(_) | Method::LowResolution { .. } | Method::Extrude | Method::None => {
-                false
-            }
+            Method::Counter | Method::CounterZFail | Method::Brute => true,
+            Method::CounterFinite(distance) => distance == Distance::Corrected,
+            Method::Crow
+            | Method::Mask(_)
+            | Method::LowResolution { .. }
+            | Method::Extrude
+            | Method::None => false,
         }
     }
 
@@ -177,14 +196,50 @@ impl Method {
         }
     }
 
-    /// Whether it draws shadow volumes that the CPU builds.
-    pub fn has_volumes(self) -> bool {
+    /// The volumes that the CPU builds for it, if it draws any.
+    pub fn recipe(self) -> Option<Recipe> {
+        let counter = Recipe::default();
         match self {
-            Method::Counter
-            | Method::CounterZFail
-            | Method::Mask(_)
-            | Method::LowResolution { .. } => true,
-            Method::Extrude | Method::None => false,
+            Method::Counter | Method::Mask(_) | Method::LowResolution { .. } => Some(counter),
+            Method::CounterZFail => Some(Recipe {
+                path: PathRule::ZFailAlways,
+                ..counter
+            }),
+            Method::CounterFinite(distance) => Some(Recipe {
+                extrusion: Extrusion::Finite(distance),
+                ..counter
+            }),
+            Method::Brute => Some(Recipe {
+                construction: Construction::Brute,
+                ..counter
+            }),
+            Method::Crow => Some(Recipe {
+                construction: Construction::Crow,
+                ..counter
+            }),
+            Method::Extrude | Method::None => None,
+        }
+    }
+}
+
+/// How volumes are built and drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// What makes their quads.
+    pub construction: Construction,
+    /// Where they end.
+    pub extrusion: Extrusion,
+    /// How they are counted.
+    pub path: PathRule,
+}
+
+impl Default for Recipe {
+    /// That of [`Method::Counter`].
+    fn default() -> Self {
+        Self {
+            construction: Construction::Counter,
+            extrusion: Extrusion::Infinite,
+            path: PathRule::ZPassWhereExact,
         }
     }
 }

@@ -91,7 +91,11 @@ pub(crate) fn technique(
 ) -> Result<Box<dyn Technique>, GpuError> {
     method.check(application)?;
     Ok(match method {
-        Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::Counter
+        | Method::CounterZFail
+        | Method::CounterFinite(_)
+        | Method::Brute
+        | Method::Crow => Box::new(Stencil::new(gpu, shadows, draw)),
         Method::Mask(buffer @ (MaskBuffer::Alpha | MaskBuffer::Max)) => {
             Box::new(InFrame::new(gpu, shadows, draw, buffer, application))
         }

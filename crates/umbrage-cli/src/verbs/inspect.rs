@@ -9,6 +9,7 @@ use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
 use umbrage_lab::stage::{StageError, casting};
 use umbrage_scene::Progress;
 
+use crate::actor;
 use crate::args::InspectArgs;
 use crate::error::CliError;
 use crate::progress::Bar;
@@ -21,8 +22,10 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     use_threads(&args.common.run);
     let bar = Bar::new(args.common.results.quiet);
     let start = Instant::now();
-    let scene = umbrage_scene::open(&args.scene, &bar)?;
-    let soup = scene.soup_at(args.common.world.origin.map(|point| point.0))?;
+    let options = &args.common.world;
+    let scene = actor::open(&args.scene, &options.actors, &bar)?;
+    let posed = scene.posed(options.time);
+    let soup = scene.soup_posed(&posed, options.origin.map(|point| point.0))?;
     let load = start.elapsed().as_secs_f64() * 1e3;
 
     let world_file = args.common.world.file.as_deref();

@@ -8,6 +8,7 @@ mod array;
 mod boxes;
 mod bvh;
 mod clusters;
+mod deform;
 mod edges;
 mod extent;
 mod half_edges;
@@ -16,6 +17,7 @@ mod objects;
 mod planes;
 mod query;
 mod save;
+mod slots;
 mod snap;
 pub mod stages;
 mod subset;
@@ -45,7 +47,7 @@ pub(crate) use planes::{FILTER, exact_side};
 pub(crate) use subset::lanes;
 pub use validate::WorldFault;
 
-use self::stages::Tree;
+use self::stages::{Tree, Welded};
 use crate::mesh::{Casting, Mesh};
 use crate::stamp;
 
@@ -142,7 +144,8 @@ pub struct BuildTimes {
 /// removed. All arrays hold the fixed part first, then the objects.
 #[derive(Clone, Debug, Default)]
 pub struct World {
-    /// Positions, distinct and numbered by first use in the fixed part and in each object.
+    /// Positions, numbered by first use in the fixed part and in each object; distinct but in objects
+    /// that deform.
     pub positions: Array<Vec3>,
     /// Three vertices a triangle, as wound in the mesh, in BVH leaf order.
     pub triangles: Array<[u32; 3]>,
@@ -201,6 +204,16 @@ impl World {
     /// Builds a world. Deterministic; in debug builds every invariant is checked.
     pub fn build(mesh: &Mesh) -> Result<Self, WorldError> {
         check_input(mesh)?;
+        let (world, _) = Self::build_welded(mesh, stages::weld);
+        #[cfg(debug_assertions)]
+        if let Err(fault) = world.validate() {
+            panic!("World::build broke an invariant: {fault}");
+        }
+        Ok(world)
+    }
+
+    /// Builds a world of a mesh that was checked; `weld` says which vertices are one.
+    fn build_welded(mesh: &Mesh, weld: impl FnOnce(&Mesh) -> Welded) -> (Self, Welded) {
         let start = Instant::now();
         let mut clock = Stopwatch(start);
         let mut report = WorldReport {
@@ -208,7 +221,7 @@ impl World {
             ..WorldReport::default()
         };
 
-        let welded = stages::weld(mesh);
+        let welded = weld(mesh);
         report.welded_vertices = welded.count;
         report.triangles = welded.kept.len();
         report.degenerate_triangles = mesh.triangles.len() - welded.kept.len();
@@ -244,11 +257,7 @@ impl World {
         world.report.bytes_per_triangle =
             world.bytes() as f64 / world.triangles.len().max(1) as f64;
         world.report.build_ms.total = start.elapsed().as_secs_f64() * 1e3;
-        #[cfg(debug_assertions)]
-        if let Err(fault) = world.validate() {
-            panic!("World::build broke an invariant: {fault}");
-        }
-        Ok(world)
+        (world, welded)
     }
 
     /// A new world, all of whose triangles are fixed.

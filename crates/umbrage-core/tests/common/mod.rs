@@ -1,8 +1,12 @@
 //! Random soups for the tests of this crate.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
-use glam::Vec3;
-use umbrage_core::{Casting, Light, LightShape, Mesh};
+use std::collections::BTreeMap;
+
+use glam::{DQuat, DVec3, Vec3};
+use umbrage_core::volume::{VolumeBuilder, Volumes};
+use umbrage_core::world::{Pose, World};
+use umbrage_core::{Casting, Cull, Culls, Light, LightShape, Mesh};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 pub(crate) struct Random(pub(crate) u64);
@@ -131,4 +135,55 @@ pub(crate) fn spot(position: Vec3, direction: Vec3, cos_outer: f32, range: f32) 
         range,
         shape,
     }
+}
+
+pub(crate) fn random_pose(r: &mut Random) -> Pose {
+    let axis = r.point().as_dvec3().normalize_or(DVec3::Y);
+    Pose {
+        rotation: DQuat::from_axis_angle(axis, 3.0 * f64::from(r.signed())),
+        translation: 2.0 * r.point().as_dvec3(),
+    }
+}
+
+pub(crate) fn lights(r: &mut Random, count: usize) -> Vec<Light> {
+    let mut lights = vec![sun(Vec3::new(0.3, -1.0, 0.2))];
+    for i in 1..count {
+        let (at, range) = (2.5 * r.point(), 0.4 + 0.3 * r.signed());
+        lights.push(match i % 3 {
+            0 => spot(at, r.point(), 0.7, 2.0 * range),
+            _ => point_light(at, range),
+        });
+    }
+    lights
+}
+
+pub(crate) type Corners = [[u32; 3]; 3];
+
+pub(crate) fn bits(corners: [Vec3; 3]) -> Corners {
+    corners.map(|p| p.to_array().map(f32::to_bits))
+}
+
+/// The chain of a light by where its triangles stand, whatever they are numbered.
+pub(crate) fn chain(
+    world: &World,
+    volumes: &Volumes,
+    light: usize,
+) -> BTreeMap<(Corners, i32), usize> {
+    let mut found = BTreeMap::new();
+    for t in volumes.chain_triangles(light) {
+        let key = (bits(world.corners(t.triangle())), t.coefficient());
+        *found.entry(key).or_default() += 1;
+    }
+    found
+}
+
+/// Without hidden casters, whose choice depends on the tree.
+pub(crate) fn builder() -> VolumeBuilder {
+    VolumeBuilder::new(Culls::EVERY.without(Cull::Hidden))
+}
+
+pub(crate) fn build(world: &World, lights: &[Light]) -> Volumes {
+    let mut volumes = Volumes::default();
+    builder().build(world, lights, |_| true, &mut volumes);
+    volumes
 }

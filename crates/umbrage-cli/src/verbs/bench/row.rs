@@ -65,7 +65,7 @@ fn fill(
     })?;
     let timed: Vec<f64> = lab.frames[1..].iter().map(|frame| frame.frame).collect();
     row.set_frame_times(&timed);
-    row.build_ms = method.has_volumes().then_some(lab.times.volumes_first);
+    row.build_ms = method.recipe().map(|_| lab.times.volumes_first);
     row.gpu_ms = lab.gpu().timestamp_ns.map(|_| lab.times.gpu());
     let volumes = 4 * (lab.volumes.quads.len() + lab.plan.caps.len()) as u64;
     row.gpu_bytes = Some(volumes + lab.held.gpu_bytes);
