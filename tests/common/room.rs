@@ -79,7 +79,7 @@ fn triangle(mesh: &mut Mesh, corners: [Vec3; 3], material: u32) {
 }
 
 /// Front where a, b, c, d run counter-clockwise.
-fn quad(mesh: &mut Mesh, [a, b, c, d]: [Vec3; 4], material: u32) {
+pub(crate) fn quad(mesh: &mut Mesh, [a, b, c, d]: [Vec3; 4], material: u32) {
     triangle(mesh, [a, b, c], material);
     triangle(mesh, [a, c, d], material);
 }

@@ -312,7 +312,15 @@ pub(crate) struct Common {
     #[command(flatten)]
     pub(crate) view: ViewArgs,
     /// counter: z-pass from the eye count; counter-zfail: both caps for every light; none: no
-    /// shadows
+    /// shadows.
+    ///
+    /// Without a stencil (Roettger, Irion and Ertl): mask-screen doubles and halves an 8-bit mask
+    /// of three values, normalised by three rectangles; it can represent two layers on the way to a
+    /// count, and beyond may show lit what is in shadow. mask-alpha: the same in the frame buffer's
+    /// float alpha, whose exponent counts 16 layers; mask-max: 14, normalised by one rectangle with
+    /// the maximum blend equation, and one more for black shadows. half, quarter: counted in the
+    /// stencil at that part of the resolution, the mask filtered bilinearly; also mask-screen-half
+    /// and so on
     #[arg(
         long,
         help_heading = "Run",
@@ -387,6 +395,10 @@ pub(crate) struct ViewArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunArgs {
+    /// What masks leave of a light in its shadow: nothing; an ambient term, in one more draw a
+    /// light; or half of it. Other methods know black only
+    #[arg(long, value_enum, default_value_t = Shadows::Black)]
+    pub(crate) shadows: Shadows,
     /// Frames that times are medians over, after one warm-up
     #[arg(long, value_name = "N", default_value = "5")]
     pub(crate) repeat: NonZeroUsize,
@@ -431,6 +443,25 @@ impl From<Casters> for umbrage_lab::stage::Casters {
             Casters::Front => Self::Front,
             Casters::Back => Self::Back,
             Casters::Both => Self::Both,
+        }
+    }
+}
+
+/// `--shadows`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Shadows {
+    #[default]
+    Black,
+    Ambient,
+    Attenuated,
+}
+
+impl From<Shadows> for umbrage_lab::application::Application {
+    fn from(choice: Shadows) -> Self {
+        match choice {
+            Shadows::Black => Self::Black,
+            Shadows::Ambient => Self::Ambient,
+            Shadows::Attenuated => Self::Attenuated,
         }
     }
 }

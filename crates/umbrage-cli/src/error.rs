@@ -5,6 +5,7 @@ use std::path::Path;
 
 use thiserror::Error;
 use umbrage_core::world::SavedWorldError;
+use umbrage_lab::application::NoMask;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
 use umbrage_lab::stage::StageError;
@@ -70,14 +71,20 @@ impl From<GpuError> for CliError {
     }
 }
 
-impl From<PictureError> for CliError {
-    fn from(error: PictureError) -> Self {
+impl From<NoMask> for CliError {
+    fn from(error: NoMask) -> Self {
         CliError::BadInput(error.to_string())
     }
 }
 
 impl From<BaselineError> for CliError {
     fn from(error: BaselineError) -> Self {
+        CliError::BadInput(error.to_string())
+    }
+}
+
+impl From<PictureError> for CliError {
+    fn from(error: PictureError) -> Self {
         CliError::BadInput(error.to_string())
     }
 }

@@ -167,6 +167,10 @@ pub(crate) struct CheckReport {
     pub(crate) samples: u64,
     pub(crate) wrong: u64,
     pub(crate) ambiguous: u64,
+    /// Pixel-lights whose layers the method's mask cannot represent, of those in the light's range,
+    /// facing it or not; no other can be wrong. Null for methods without such a limit, and at lower
+    /// resolutions.
+    pub(crate) unrepresentable: Option<u64>,
     pub(crate) tolerance_px: f64,
     pub(crate) tolerance_depth: f64,
     /// Whether every light's volume is closed, counted in integers.

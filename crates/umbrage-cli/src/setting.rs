@@ -36,6 +36,7 @@ pub(crate) struct Setting {
 impl Setting {
     /// Loads `scene` and settles casters, lights and view.
     pub(crate) fn new(scene: &str, common: &Common) -> Result<Self, CliError> {
+        common.method.0.check(common.run.shadows.into())?;
         use_threads(&common.run);
         let bar = Bar::new(common.results.quiet);
         let stage = stage(scene, &common.world, &bar)?;

@@ -246,6 +246,25 @@ fn a_world_is_kept_in_a_file() {
 }
 
 #[test]
+fn masks_say_what_they_cannot_represent_and_others_make_none() {
+    let check = |method: &str| {
+        json(
+            0,
+            &[&["check", SOUP, "--method", method], &SMALL[..]].concat(),
+        )
+    };
+    let screen = check("mask-screen");
+    assert!(
+        screen["unrepresentable"].as_u64().expect("a count") >= screen["wrong"].as_u64().unwrap()
+    );
+    assert_eq!(check("mask-alpha")["wrong"], 0);
+    assert!(check("half")["unrepresentable"].is_null());
+    let options = ["render", SOUP, "--shadows", "attenuated"];
+    let message = refused(2, &options);
+    assert!(message.contains("counter makes no mask"), "{message}");
+}
+
+#[test]
 fn no_such_adapter_exits_with_3() {
     let folder = Folder::new("adapter");
     let picture = folder.path("out.png");

@@ -52,6 +52,9 @@ pub enum GpuError {
     /// Reading results back failed.
     #[error("the device was lost while a frame was read back: {0}")]
     Readback(String),
+    /// The method makes no mask that could be applied so.
+    #[error(transparent)]
+    NoMask(#[from] crate::application::NoMask),
     /// The library refused.
     #[error(transparent)]
     Render(#[from] RenderError),

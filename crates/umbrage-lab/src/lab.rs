@@ -13,6 +13,7 @@ use umbrage::{
 };
 use umbrage_truth::{Mask, NearClip};
 
+use crate::application::Application;
 use crate::gbuffer::{GBufferPass, Targets, texture};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::LightDraw;
@@ -20,7 +21,7 @@ use crate::picture::Lit;
 use crate::readback::read_texture;
 use crate::run::{Run, read_calls};
 use crate::stage::{Stage, StageLight};
-use crate::technique::{TechniqueReport, technique};
+use crate::technique::{Overflow, TechniqueReport, technique};
 use crate::timer::{StageTimes, Timer, medians, ms_since};
 
 pub use crate::method::Method;
@@ -31,6 +32,8 @@ pub struct Lab {
     gpu: Gpu,
     /// Which steps skip work.
     pub culls: Culls,
+    /// What masks leave of a light in its shadow.
+    pub application: Application,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -56,6 +59,7 @@ impl Lab {
         Self {
             gpu,
             culls: Culls::EVERY,
+            application: Application::default(),
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -130,7 +134,13 @@ impl Lab {
         )?;
         shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
-        let technique = technique(method, &self.gpu, &shadows, draw)?;
+        // What a mask leaves in the shadow is for pictures; whether a pixel is lit does not hang
+        // on it.
+        let application = match draw {
+            LightDraw::Shade => self.application,
+            _ => Application::Black,
+        };
+        let technique = technique(method, application, &self.gpu, &shadows, draw)?;
         Ok(Run {
             targets,
             shadows,
@@ -177,7 +187,7 @@ impl Lab {
             self.uploaded =
                 run.shadows
                     .prepare(&self.gpu.device, &self.gpu.queue, &self.frame(view))?;
-            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
             technique.prepare(&given)?;
             self.times.upload = ms_since(upload);
             let record = Instant::now();
@@ -191,7 +201,7 @@ impl Lab {
             if let Some(timer) = &timer {
                 timer.mark(&mut encoder, 4);
             }
-            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
             technique.record(&given, &mut encoder, 0..lights.len(), &hdr)?;
             if let Some(timer) = &timer {
                 timer.mark(&mut encoder, 5);
@@ -258,6 +268,23 @@ impl Lab {
         self.run(stage, view, self.method, LightDraw::Mark, VolumeColor::None)
     }
 
+    /// The pixel-lights, among those that the lights reach, whose layers the method's mask cannot
+    /// represent, in what `volumes` and `plan` hold: a bit for each light, as in a mask. `None` if
+    /// the method has no such limit, or its mask another resolution.
+    pub fn unrepresentable(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+    ) -> Result<Option<Mask>, GpuError> {
+        let Some(layers) = self.method.layers() else {
+            return Ok(None);
+        };
+        let mut run = self.masking(stage, view)?;
+        run.technique = Box::new(Overflow::new(&self.gpu, &run.shadows, layers));
+        self.mask_in(&mut run, stage, lights, view).map(Some)
+    }
+
     /// As [`Lab::mask`], with buffers that keep what they hold from mask to mask.
     pub fn mask_in(
         &mut self,
@@ -275,7 +302,7 @@ impl Lab {
         }
         run.surface.update(&self.gpu, stage);
         self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
-        let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+        let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
         technique.prepare(&given)?;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let layer = texture(
@@ -296,7 +323,7 @@ impl Lab {
             if first == 0 {
                 run.record_surface(&self.gpu, &mut encoder, None);
             }
-            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
             let batch = first..lights.len().min(first + 32);
             technique.record(&given, &mut encoder, batch, &layer)?;
             self.gpu.queue.submit([encoder.finish()]);

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 pub mod actors;
+pub mod application;
 pub mod auto_camera;
 pub mod gbuffer;
 pub mod gpu;

@@ -7,6 +7,8 @@ use thiserror::Error;
 use umbrage::frame::{Distance, Extrusion, PathRule};
 use umbrage::volume::Construction;
 
+use crate::application::{Application, NoMask};
+
 /// How shadows are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
@@ -21,6 +23,15 @@ pub enum Method {
     Brute,
     /// Edges that point to two faces (Crow 1977, Bergeron 1986).
     Crow,
+    /// Counter volumes counted by doubling and halving a mask instead of the stencil.
+    Mask(MaskBuffer),
+    /// Counter volumes counted at a lower resolution, the mask applied with bilinear filtering.
+    LowResolution {
+        /// What they are counted in.
+        of: Counting,
+        /// How much lower.
+        divisor: Divisor,
+    },
     /// A static buffer extruded by the vertex shader, for closed meshes (Brennan 2002).
     Extrude(Normals),
     /// No shadows: the floor that every frame time is compared with.
@@ -38,6 +49,60 @@ pub enum Normals {
     VertexWeights,
 }
 
+/// What counts volumes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Counting {
+    /// The stencil.
+    Stencil,
+    /// A mask that is doubled and halved.
+    Mask(MaskBuffer),
+}
+
+/// Where a mask is doubled and halved, and how it is normalised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MaskBuffer {
+    /// In eight bits of its own, where three values stand for no layer, one, and more; normalised by
+    /// three rectangles.
+    Screen,
+    /// In the alpha channel that lights add up beside, a float; normalised by three rectangles.
+    Alpha,
+    /// The same halved and doubled, normalised by one rectangle with the maximum blend equation.
+    Max,
+}
+
+impl MaskBuffer {
+    /// The layers that it can count up to before the values run out.
+    pub fn layers(self) -> u32 {
+        match self {
+            // 1/4, 1/2, 1.
+            MaskBuffer::Screen => 2,
+            // From 1/2 to 2^15: the next power of two is no half float.
+            MaskBuffer::Alpha => 16,
+            // From 1 to 2^-14: the next power of two is a half float, but not a normal one.
+            MaskBuffer::Max => 14,
+        }
+    }
+}
+
+/// By what the sides of the picture are divided, rounded up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Divisor {
+    /// By two.
+    Half,
+    /// By four.
+    Quarter,
+}
+
+impl Divisor {
+    /// Pixels a texel of the mask is wide and high.
+    pub fn pixels(self) -> u32 {
+        match self {
+            Divisor::Half => 2,
+            Divisor::Quarter => 4,
+        }
+    }
+}
+
 /// A name that is no method's.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("no method is called {name:?}; there are: {}", Method::names().join(", "))]
@@ -48,18 +113,33 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 10] = [
+    pub const ALL: [Method; 21] = [
         Method::Counter,
         Method::CounterZFail,
         Method::CounterFinite(Distance::Corrected),
         Method::CounterFinite(Distance::Range),
         Method::Brute,
         Method::Crow,
+        Method::Mask(MaskBuffer::Screen),
+        Method::Mask(MaskBuffer::Alpha),
+        Method::Mask(MaskBuffer::Max),
+        Self::low(Counting::Stencil, Divisor::Half),
+        Self::low(Counting::Stencil, Divisor::Quarter),
+        Self::low(Counting::Mask(MaskBuffer::Screen), Divisor::Half),
+        Self::low(Counting::Mask(MaskBuffer::Screen), Divisor::Quarter),
+        Self::low(Counting::Mask(MaskBuffer::Alpha), Divisor::Half),
+        Self::low(Counting::Mask(MaskBuffer::Alpha), Divisor::Quarter),
+        Self::low(Counting::Mask(MaskBuffer::Max), Divisor::Half),
+        Self::low(Counting::Mask(MaskBuffer::Max), Divisor::Quarter),
         Method::Extrude(Normals::Neighbours),
         Method::Extrude(Normals::FaceWeights),
         Method::Extrude(Normals::VertexWeights),
         Method::None,
     ];
+
+    const fn low(of: Counting, divisor: Divisor) -> Self {
+        Method::LowResolution { of, divisor }
+    }
 
     /// Their names.
     pub fn names() -> Vec<Cow<'static, str>> {
@@ -75,6 +155,21 @@ impl Method {
             Method::CounterFinite(Distance::Range) => "counter-finite-naive".into(),
             Method::Brute => "brute".into(),
             Method::Crow => "crow".into(),
+            Method::Mask(MaskBuffer::Screen) => "mask-screen".into(),
+            Method::Mask(MaskBuffer::Alpha) => "mask-alpha".into(),
+            Method::Mask(MaskBuffer::Max) => "mask-max".into(),
+            Method::LowResolution { of, divisor } => {
+                let divisor = match divisor {
+                    Divisor::Half => "half",
+                    Divisor::Quarter => "quarter",
+                };
+                match of {
+                    Counting::Stencil => divisor.into(),
+                    Counting::Mask(buffer) => {
+                        format!("{}-{divisor}", Method::Mask(buffer).name()).into()
+                    }
+                }
+            }
             Method::Extrude(Normals::Neighbours) => "extrude".into(),
             Method::Extrude(Normals::FaceWeights) => "extrude-face-weights".into(),
             Method::Extrude(Normals::VertexWeights) => "extrude-vertex-weights".into(),
@@ -82,12 +177,37 @@ impl Method {
         }
     }
 
-    /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure.
+    /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure. A mask does so
+    /// only where it can represent the layers: see [`Method::layers`].
     pub fn is_exact(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail | Method::Brute => true,
             Method::CounterFinite(distance) => distance == Distance::Corrected,
-            Method::Crow | Method::Extrude(_) | Method::None => false,
+            Method::Crow
+            | Method::Mask(_)
+            | Method::LowResolution { .. }
+            | Method::Extrude(_)
+            | Method::None => false,
+        }
+    }
+
+    /// The most layers that its mask can represent on the way to a count, where it has a mask at
+    /// full resolution.
+    pub fn layers(self) -> Option<u32> {
+        match self {
+            Method::Mask(buffer) => Some(buffer.layers()),
+            _ => None,
+        }
+    }
+
+    /// Whether it can leave this much of a light in its shadow.
+    pub fn check(self, application: Application) -> Result<(), NoMask> {
+        match (self, application) {
+            (Method::Mask(_) | Method::LowResolution { .. }, _) | (_, Application::Black) => Ok(()),
+            (method, application) => Err(NoMask {
+                method,
+                application,
+            }),
         }
     }
 
@@ -95,7 +215,7 @@ impl Method {
     pub fn recipe(self) -> Option<Recipe> {
         let counter = Recipe::default();
         match self {
-            Method::Counter => Some(counter),
+            Method::Counter | Method::Mask(_) | Method::LowResolution { .. } => Some(counter),
             Method::CounterZFail => Some(Recipe {
                 path: PathRule::ZFailAlways,
                 ..counter
@@ -144,7 +264,11 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         let mut all = Self::ALL.into_iter();
-        all.find(|method| method.name() == name)
+        // "counter-half" says "half" in full.
+        let short = name.strip_prefix("counter-");
+        let short = short.filter(|rest| ["half", "quarter"].contains(rest));
+        let wanted = short.unwrap_or(name);
+        all.find(|method| method.name() == wanted)
             .ok_or_else(|| UnknownMethod { name: name.into() })
     }
 }
@@ -160,5 +284,26 @@ mod tests {
         }
         let refused = "stencil".parse::<Method>().unwrap_err().to_string();
         assert!(refused.contains("counter-zfail"), "{refused}");
+    }
+
+    #[test]
+    fn the_counter_at_a_lower_resolution_has_two_names() {
+        assert_eq!("counter-half".parse::<Method>(), "half".parse());
+        assert_eq!("counter-quarter".parse::<Method>(), "quarter".parse());
+        assert!("counter-counter".parse::<Method>().is_err());
+    }
+
+    #[test]
+    fn only_masks_leave_light_in_the_shadow() {
+        for method in Method::ALL {
+            let name = method.name();
+            let masked = name.contains("mask") || name.contains("half") || name.contains("quarter");
+            assert!(method.check(Application::Black).is_ok());
+            for application in [Application::Ambient, Application::Attenuated] {
+                assert_eq!(method.check(application).is_ok(), masked, "{name}");
+            }
+        }
+        let refused = Method::Counter.check(Application::Ambient).unwrap_err();
+        assert!(refused.to_string().contains("mask-alpha"), "{refused}");
     }
 }

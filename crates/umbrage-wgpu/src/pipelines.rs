@@ -17,6 +17,26 @@ pub(crate) struct Pipelines {
     pub(crate) zfail_caps: RenderPipeline,
     pub(crate) zfail_reversed_caps: RenderPipeline,
     pub(crate) clean: RenderPipeline,
+    pub(crate) shared: Shared,
+}
+
+/// What all pipelines of volumes are made from.
+#[derive(Debug)]
+pub(crate) struct Shared {
+    pub(crate) module: ShaderModule,
+    pub(crate) layout: wgpu::PipelineLayout,
+    pub(crate) depth_stencil_format: wgpu::TextureFormat,
+    pub(crate) sample_count: u32,
+    pub(crate) depth_clamp: bool,
+    pub(crate) extrusion: Extrusion,
+}
+
+impl Shared {
+    /// Constants of the vertex shaders, for volumes that end as `extrusion` says.
+    pub(crate) fn constants(extrusion: Extrusion) -> [(&'static str, f64); 1] {
+        let is_finite = extrusion != Extrusion::Infinite;
+        [("UMBRAGE_FINITE", f64::from(u8::from(is_finite)))]
+    }
 }
 
 /// When a side or cap counts.
@@ -56,6 +76,14 @@ impl Pipelines {
             zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind),
             zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed),
             clean: build("umbrage clean", "everywhere", Counts::Clean),
+            shared: Shared {
+                module,
+                layout,
+                depth_stencil_format: options.depth_stencil_format,
+                sample_count: options.sample_count,
+                depth_clamp: options.depth_clamp,
+                extrusion: options.extrusion,
+            },
         }
     }
 }
@@ -82,7 +110,6 @@ fn pipeline(
         Counts::BehindReversed => (face(Keep, IncrementWrap), face(Keep, DecrementWrap)),
         Counts::Clean => (face(Zero, Zero), face(Zero, Zero)),
     };
-    let is_finite = options.extrusion != Extrusion::Infinite;
     let volume_color = match counts {
         Counts::Clean => VolumeColor::None,
         _ => options.volume_color,
@@ -131,7 +158,7 @@ fn pipeline(
             module,
             entry_point: Some(vertex_entry),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &[("UMBRAGE_FINITE", f64::from(u8::from(is_finite)))],
+                constants: &Shared::constants(options.extrusion),
                 ..Default::default()
             },
             buffers: &[],

@@ -28,7 +28,7 @@ pub const LIGHT_STENCIL: StencilFaceState = StencilFaceState {
 /// Draws volumes into the stencil of a host's pass, light after light.
 #[derive(Debug)]
 pub struct ShadowRenderer {
-    pipelines: Pipelines,
+    pub(crate) pipelines: Pipelines,
     layout: BindGroupLayout,
     view: Buffer,
     view_size: [u32; 2],
@@ -267,33 +267,15 @@ impl ShadowRenderer {
         for (number, light) in drawn.filter(|(_, light)| !light.scissor.is_empty()) {
             let s = light.scissor;
             pass.set_scissor_rect(s.x, s.y, s.width, s.height);
-            let sides = match light.path {
-                LightPath::ZPass { .. } => &self.pipelines.zpass_sides,
-                _ => &self.pipelines.zfail_sides,
-            };
-            let reversed = &self.pipelines.zfail_reversed_caps;
-            let mut counted = false;
-            for (range, pipeline, offset) in [
-                (&light.quads, sides, LightCalls::SIDES),
-                (&light.caps, &self.pipelines.zfail_caps, LightCalls::CAPS),
-                (&light.reversed_caps, reversed, LightCalls::REVERSED_CAPS),
-            ] {
-                if range.is_empty() {
-                    continue;
-                }
-                counted = true;
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, bind_group, &[]);
-                match calls {
-                    Some(calls) => {
-                        pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
-                    }
-                    None => {
-                        let instance = number as u32..number as u32 + 1;
-                        pass.draw(6 * range.start..6 * range.end, instance);
-                    }
-                }
-            }
+            let p = &self.pipelines;
+            let sides = [&p.zpass_sides, &p.zfail_sides];
+            let counted = self.draw_volume(
+                pass,
+                number,
+                light,
+                sides,
+                [&p.zfail_caps, &p.zfail_reversed_caps],
+            );
             pass.set_stencil_reference(u32::from(light.stencil_reference));
             draw_light(pass, number, light);
             if let Some(calls) = calls.filter(|_| counted) {
@@ -302,6 +284,51 @@ impl ShadowRenderer {
                 pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
             }
         }
+    }
+
+    /// Draws a light's quads and caps over the scissor that is set, with `sides` for z-pass and for
+    /// z-fail, and `caps` for triangles taken as wound and for those taken reversed; false if it has
+    /// none.
+    pub(crate) fn draw_volume(
+        &self,
+        pass: &mut RenderPass<'_>,
+        number: usize,
+        light: &LightPlan,
+        sides: [&wgpu::RenderPipeline; 2],
+        caps: [&wgpu::RenderPipeline; 2],
+    ) -> bool {
+        let Some(bind_groups) = &self.bind_groups else {
+            return false;
+        };
+        let calls = self.calls();
+        let bind_group = &bind_groups[usize::from(calls.is_some())];
+        let sides = match light.path {
+            LightPath::ZPass { .. } => sides[0],
+            _ => sides[1],
+        };
+        let mut counted = false;
+        for (range, pipeline, offset) in [
+            (&light.quads, sides, LightCalls::SIDES),
+            (&light.caps, caps[0], LightCalls::CAPS),
+            (&light.reversed_caps, caps[1], LightCalls::REVERSED_CAPS),
+        ] {
+            if range.is_empty() {
+                continue;
+            }
+            counted = true;
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, bind_group, &[]);
+            match calls {
+                Some(calls) => {
+                    pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
+                }
+                None => {
+                    let instance = number as u32..number as u32 + 1;
+                    pass.draw(6 * range.start..6 * range.end, instance);
+                }
+            }
+        }
+        counted
     }
 
     /// The draw of light number `light` for the host's own pipeline and bind groups; the instance

@@ -99,6 +99,6 @@ pub use umbrage_core::world::{
 };
 pub use umbrage_core::{Casting, Cull, Culls, Fingerprint, Light, LightShape, Mesh, View};
 pub use umbrage_wgpu::{
-    CLIP_WGSL, Call, Frame, LIGHT_STENCIL, LightCalls, RenderError, RendererOptions,
-    ShadowRenderer, Uploaded, ViewUniform, VolumeColor, light_wgsl,
+    CLIP_WGSL, Call, CountStep, FaceOptions, Frame, LIGHT_STENCIL, LightCalls, RenderError,
+    RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces, light_wgsl,
 };

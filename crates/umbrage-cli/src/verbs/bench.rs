@@ -30,10 +30,14 @@ use row::{Judge, Task, measure};
 pub(crate) fn run(args: &BenchArgs) -> Result<(), CliError> {
     // What is typed wrong should not show after an hour.
     let baseline = args.baseline.as_deref().map(bench::read).transpose()?;
+    for method in &args.methods {
+        method.0.check(args.run.shadows.into())?;
+    }
     use_threads(&args.run);
     let interrupt = Interrupt::listen();
     let mut lab = Lab::new(Gpu::open(&args.run.adapter)?);
     lab.culls = args.run.culls();
+    lab.application = args.run.shadows.into();
     let mut report = BenchReport {
         command: command_line(),
         when: bench::rfc3339(SystemTime::now()),

@@ -44,6 +44,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
     bar.stage("draw masks", 0);
     lab.prepare(stage, lights, view, method);
     let mask = lab.mask(stage, lights, view)?;
+    let unrepresentable = lab.unrepresentable(stage, lights, view)?;
     bar.stage("build oracle", 0);
     let oracle = Oracle::new(&stage.mesh);
     bar.stage("judge", u64::from(view.size[0]) * u64::from(view.size[1]));
@@ -71,6 +72,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         samples: found.samples,
         wrong: found.wrong,
         ambiguous: found.ambiguous,
+        unrepresentable: unrepresentable.map(|bits| bits.words.iter().map(ones).sum()),
         tolerance_px: found.tolerance_px,
         tolerance_depth: found.tolerance_depth,
         closed: lab.volumes.check_closed(&stage.world).is_ok(),
@@ -81,6 +83,10 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
             skipped,
         },
     })
+}
+
+fn ones(word: &u32) -> u64 {
+    u64::from(word.count_ones())
 }
 
 fn table(report: &CheckReport) -> Table {
@@ -107,6 +113,9 @@ fn table(report: &CheckReport) -> Table {
                 "NOT CLOSED"
             },
         ]);
+    if let Some(unrepresentable) = report.unrepresentable {
+        table.count("layers beyond the mask", unrepresentable);
+    }
     for worst in &report.worst {
         table.row([
             format!("wrong at {}, {}", worst.x, worst.y),

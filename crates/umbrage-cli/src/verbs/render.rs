@@ -37,6 +37,7 @@ fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> 
     bar.stage("open adapter", 0);
     let mut lab = Lab::new(Gpu::open(&run.adapter)?);
     lab.culls = run.culls();
+    lab.application = run.shadows.into();
     bar.stage("draw", 0);
     let method = args.common.method.0;
     let lit = lab.render(stage, lights, view, method, run.repeat.get())?;
