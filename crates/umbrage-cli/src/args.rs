@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::json;
 use crate::values::{
     CameraChoice, Instructions, LightChoice, Method, NamedCamera, NoCull, Point, RangeChoice, Size,
-    adapter, metres, ratio, seconds, time, weld,
+    adapter, fps, metres, ratio, seconds, time, weld,
 };
 use umbrage_report::Table;
 
@@ -179,6 +179,10 @@ pub(crate) struct BenchArgs {
     /// Times only: ask no oracle for errors
     #[arg(long)]
     pub(crate) no_oracle: bool,
+    /// Time runs on from frame to frame, this many frames a second: what moves is posed, and what
+    /// hangs on it made anew, within the frame's time. Errors are those of the first moment
+    #[arg(long, value_name = "FPS", value_parser = fps)]
+    pub(crate) play: Option<f32>,
     /// Seconds after which a row gets no more repeats
     #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = seconds)]
     pub(crate) limit: f32,

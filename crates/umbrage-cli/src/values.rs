@@ -243,6 +243,14 @@ pub(crate) fn ratio(text: &str) -> Result<f64, String> {
     }
 }
 
+/// `--play`.
+pub(crate) fn fps(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(fps) if fps > 0.0 && fps.is_finite() => Ok(fps),
+        _ => Err("expected frames a second, above 0".to_owned()),
+    }
+}
+
 /// `--limit`.
 pub(crate) fn seconds(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {

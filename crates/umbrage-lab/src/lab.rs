@@ -26,6 +26,14 @@ use crate::timer::{StageTimes, Timer, medians, ms_since};
 
 pub use crate::method::Method;
 
+/// Frames of one view in the drawing.
+#[derive(Debug)]
+struct Rendering {
+    run: Run,
+    hdr: wgpu::Texture,
+    timer: Option<Timer>,
+}
+
 /// A device, a stage and what is needed to draw the one on the other.
 #[derive(Debug)]
 pub struct Lab {
@@ -174,65 +182,121 @@ impl Lab {
         method: Method,
         mut more: impl FnMut(&[StageTimes]) -> bool,
     ) -> Result<Lit, GpuError> {
-        let draw = LightDraw::Shade;
-        let mut run = self.run(stage, view, method, draw, VolumeColor::None)?;
-        let hdr_usage = wgpu::TextureUsages::COPY_SRC;
-        let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
-        let timer = Timer::new(&self.gpu);
-        self.frames.clear();
+        let mut rendering = self.begin(stage, view, method)?;
         loop {
-            let start = Instant::now();
-            self.prepare(stage, lights, view, method);
-            let upload = Instant::now();
-            self.uploaded =
-                run.shadows
-                    .prepare(&self.gpu.device, &self.gpu.queue, &self.frame(view))?;
-            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
-            technique.prepare(&given)?;
-            self.times.upload = ms_since(upload);
-            let record = Instant::now();
-            let mut encoder =
-                self.gpu
-                    .device
-                    .create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                        label: Some("frame"),
-                    });
-            run.record_surface(&self.gpu, &mut encoder, timer.as_ref());
-            if let Some(timer) = &timer {
-                timer.mark(&mut encoder, 4);
-            }
-            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
-            technique.record(&given, &mut encoder, 0..lights.len(), &hdr)?;
-            if let Some(timer) = &timer {
-                timer.mark(&mut encoder, 5);
-                timer.resolve(&mut encoder);
-            }
-            self.gpu.queue.submit([encoder.finish()]);
-            self.times.record = ms_since(record);
-            self.gpu
-                .device
-                .poll(wgpu::PollType::wait_indefinitely())
-                .map_err(|e| GpuError::Readback(e.to_string()))?;
-            self.times.frame = ms_since(start);
-            if let Some(timer) = &timer {
-                let [surface, receivers, lights] = timer.read(&self.gpu)?;
-                self.times.gpu_surface = surface;
-                self.times.gpu_receivers = receivers;
-                self.times.gpu_lights = lights;
-            }
-            self.frames.push(self.times);
+            self.draw(&mut rendering, stage, lights, view, Instant::now())?;
             if !more(&self.frames) {
                 break;
             }
         }
+        self.finish(&rendering)
+    }
+
+    /// As [`Lab::render`], on a stage that moves: `move_on`, asked before each frame and within its
+    /// time, moves it and says whether that frame is to be drawn.
+    pub fn render_moving<E: From<GpuError>>(
+        &mut self,
+        stage: &mut Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        mut move_on: impl FnMut(&mut Stage, &[StageTimes]) -> Result<bool, E>,
+    ) -> Result<Lit, E> {
+        let mut rendering = self.begin(stage, view, method)?;
+        loop {
+            let start = Instant::now();
+            if !move_on(stage, &self.frames)? {
+                break;
+            }
+            self.draw(&mut rendering, stage, lights, view, start)?;
+        }
+        Ok(self.finish(&rendering)?)
+    }
+
+    fn begin(&mut self, stage: &Stage, view: &View, method: Method) -> Result<Rendering, GpuError> {
+        self.frames.clear();
+        let draw = LightDraw::Shade;
+        let usage = wgpu::TextureUsages::COPY_SRC;
+        Ok(Rendering {
+            run: self.run(stage, view, method, draw, VolumeColor::None)?,
+            hdr: texture(&self.gpu, "light", view.size, draw.format(), usage),
+            timer: Timer::new(&self.gpu),
+        })
+    }
+
+    /// Draws a frame that began at `start`, and adds its times to `frames`.
+    fn draw(
+        &mut self,
+        rendering: &mut Rendering,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        start: Instant,
+    ) -> Result<(), GpuError> {
+        let Rendering { run, hdr, timer } = rendering;
+        self.prepare(stage, lights, view, run.method);
+        let upload = Instant::now();
+        self.upload(run, stage, lights, view)?;
+        self.times.upload = ms_since(upload);
+        let record = Instant::now();
+        let descriptor = wgpu::CommandEncoderDescriptor {
+            label: Some("frame"),
+        };
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        run.record_surface(&self.gpu, &mut encoder, timer.as_ref());
+        if let Some(timer) = timer {
+            timer.mark(&mut encoder, 4);
+        }
+        let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
+        technique.record(&given, &mut encoder, 0..lights.len(), hdr)?;
+        if let Some(timer) = timer {
+            timer.mark(&mut encoder, 5);
+            timer.resolve(&mut encoder);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.times.record = ms_since(record);
+        let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        done.map_err(|e| GpuError::Readback(e.to_string()))?;
+        self.times.frame = ms_since(start);
+        if let Some(timer) = timer {
+            let [surface, receivers, lights] = timer.read(&self.gpu)?;
+            self.times.gpu_surface = surface;
+            self.times.gpu_receivers = receivers;
+            self.times.gpu_lights = lights;
+        }
+        self.frames.push(self.times);
+        Ok(())
+    }
+
+    /// Hands the GPU what changed since it was last handed something.
+    fn upload(
+        &mut self,
+        run: &mut Run,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+    ) -> Result<(), GpuError> {
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
+            run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
+        }
+        run.surface.update(&self.gpu, stage);
+        self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
+        let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
+        technique.prepare(&given)
+    }
+
+    /// The last picture; `times` become medians over the frames after the first.
+    fn finish(&mut self, rendering: &Rendering) -> Result<Lit, GpuError> {
+        let Rendering { run, hdr, .. } = rendering;
         let timed = usize::from(self.frames.len() > 1);
-        self.times = medians(&self.frames[timed..]);
-        self.times.volumes_first = self.frames[0].volumes;
+        self.times = medians(&self.frames[timed.min(self.frames.len())..]);
+        self.times.volumes_first = self.frames.first().map_or(0.0, |first| first.volumes);
         self.calls = read_calls(&self.gpu, &run.shadows)?;
         self.held = run.technique.report();
-        let light = read_texture(&self.gpu, &hdr)?;
+        let light = read_texture(&self.gpu, hdr)?;
         Ok(Lit {
-            size: view.size,
+            size: run.targets.size,
             light: light
                 .chunks_exact(8)
                 .map(|t| {
@@ -296,14 +360,7 @@ impl Lab {
         if run.method != self.method {
             *run = self.masking(stage, view)?;
         }
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
-            run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
-        }
-        run.surface.update(&self.gpu, stage);
-        self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
-        let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
-        technique.prepare(&given)?;
+        self.upload(run, stage, lights, view)?;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let layer = texture(
             &self.gpu,

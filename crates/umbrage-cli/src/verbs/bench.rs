@@ -94,7 +94,7 @@ fn bench_scene(
 ) -> Result<(), CliError> {
     steps.now(scene, "load");
     let quiet = Bar::new(true);
-    let stage = stage(scene, &args.world, &quiet)?;
+    let mut stage = stage(scene, &args.world, &quiet)?;
     let lights = lights(&stage, &args.lights, &args.world)?;
     let mut oracle: Option<Oracle> = None;
     for camera in args.cameras() {
@@ -122,7 +122,8 @@ fn bench_scene(
                 }
                 steps.now(scene, &method.to_string());
                 let task = Task {
-                    stage: &stage,
+                    stage: &mut stage,
+                    step_s: args.play.map_or(0.0, |fps| 1.0 / f64::from(fps)),
                     lights: &lights,
                     view: &view,
                     method: method.0,
@@ -130,7 +131,7 @@ fn bench_scene(
                     limit: args.limit,
                     interrupt,
                 };
-                let mut row = measure(&task, lab, judge.as_mut(), (scene, &camera, size.0));
+                let mut row = measure(task, lab, judge.as_mut(), (scene, &camera, size.0));
                 row.lights = lights.len() as u64;
                 row.triangles = stage.mesh.triangles.len() as u64;
                 report.push(row);

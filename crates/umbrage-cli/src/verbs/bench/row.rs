@@ -2,7 +2,7 @@
 
 use umbrage_core::View;
 use umbrage_core::frame::LightPath;
-use umbrage_lab::gpu::GpuError;
+use umbrage_core::volume::Volumes;
 use umbrage_lab::lab::{Lab, Method};
 use umbrage_lab::picture::Lit;
 use umbrage_lab::stage::{Stage, StageLight};
@@ -10,10 +10,13 @@ use umbrage_report::bench::{BenchRow, Difference};
 use umbrage_truth::{ErrorMap, Oracle, Verdicts};
 
 use super::interrupt::Interrupt;
+use crate::error::CliError;
 
 /// What is to be measured.
 pub(super) struct Task<'a> {
-    pub(super) stage: &'a Stage,
+    pub(super) stage: &'a mut Stage,
+    /// Seconds by which time runs on from frame to frame.
+    pub(super) step_s: f64,
     pub(super) lights: &'a [StageLight],
     pub(super) view: &'a View,
     pub(super) method: Method,
@@ -32,37 +35,38 @@ pub(super) struct Judge<'a> {
 
 /// Measures a row; a method that fails gives one that says why.
 pub(super) fn measure(
-    task: &Task<'_>,
+    mut task: Task<'_>,
     lab: &mut Lab,
     judge: Option<&mut Judge<'_>>,
     place: (&str, &str, [u32; 2]),
 ) -> BenchRow {
     let mut row = BenchRow::new(&task.method.name(), place);
     row.exact = task.method.is_exact();
-    if let Err(why) = fill(task, lab, judge, &mut row) {
+    if let Err(why) = fill(&mut task, lab, judge, &mut row) {
         row.failed = Some(why.to_string());
     }
     row
 }
 
 fn fill(
-    task: &Task<'_>,
+    task: &mut Task<'_>,
     lab: &mut Lab,
     judge: Option<&mut Judge<'_>>,
     row: &mut BenchRow,
-) -> Result<(), GpuError> {
-    let Task {
-        stage,
-        lights,
-        view,
-        method,
-        ..
-    } = *task;
-    let lit = lab.render_while(stage, lights, view, method, |frames| {
+) -> Result<(), CliError> {
+    let (lights, view, method) = (task.lights, task.view, task.method);
+    let begin_s = task.stage.time_s;
+    // What another method left is not this one's.
+    lab.volumes = Volumes::default();
+    let lit = lab.render_moving(task.stage, lights, view, method, |stage, frames| {
         let spent: f64 = frames.iter().map(|frame| frame.frame / 1e3).sum();
         let late = frames.len() > 1 && (spent > f64::from(task.limit) || task.interrupt.came());
-        frames.len() <= task.repeat && !late
-    })?;
+        stage.set_time(begin_s + task.step_s * frames.len() as f64)?;
+        Ok::<bool, CliError>(frames.len() <= task.repeat && !late)
+    });
+    // The oracle judges the moment it knows.
+    task.stage.set_time(begin_s)?;
+    let (lit, stage) = (lit?, &*task.stage);
     let timed: Vec<f64> = lab.frames[1..].iter().map(|frame| frame.frame).collect();
     row.set_frame_times(&timed);
     row.build_ms = method.recipe().map(|_| lab.times.volumes_first);
@@ -80,6 +84,7 @@ fn fill(
     let Some(Judge { oracle, verdicts }) = judge else {
         return Ok(());
     };
+    lab.prepare(stage, lights, view, method);
     let mask = lab.mask(stage, lights, view)?;
     let skipped: Vec<bool> = (0..lights.len())
         .map(|light| matches!(lab.path(light), LightPath::Skipped(_)))
