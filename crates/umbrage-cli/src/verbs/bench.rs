@@ -10,6 +10,7 @@ mod row;
 use std::time::SystemTime;
 
 use umbrage_core::Light;
+use umbrage_lab::application::Application;
 use umbrage_lab::gpu::Gpu;
 use umbrage_lab::lab::Lab;
 use umbrage_lab::stage::Stage;
@@ -30,14 +31,16 @@ use row::{Judge, Task, measure};
 pub(crate) fn run(args: &BenchArgs) -> Result<(), CliError> {
     // What is typed wrong should not show after an hour.
     let baseline = args.baseline.as_deref().map(bench::read).transpose()?;
-    for method in &args.methods {
-        method.0.check(args.run.shadows.into())?;
+    // Methods without a mask leave nothing in the shadow, whatever is asked.
+    let asked: Application = args.run.shadows.into();
+    let mut refused = args.methods.iter().map(|method| method.0.check(asked));
+    if refused.clone().all(|answer| answer.is_err()) {
+        refused.next().unwrap_or(Ok(()))?;
     }
     use_threads(&args.run);
     let interrupt = Interrupt::listen();
     let mut lab = Lab::new(Gpu::open(&args.run.adapter)?);
     lab.culls = args.run.culls();
-    lab.application = args.run.shadows.into();
     let mut report = BenchReport {
         command: command_line(),
         when: bench::rfc3339(SystemTime::now()),
@@ -121,6 +124,11 @@ fn bench_scene(
                     return Ok(());
                 }
                 steps.now(scene, &method.to_string());
+                let asked = args.run.shadows.into();
+                lab.application = match method.0.check(asked) {
+                    Ok(()) => asked,
+                    Err(_) => Application::Black,
+                };
                 let task = Task {
                     stage: &mut stage,
                     step_s: args.play.map_or(0.0, |fps| 1.0 / f64::from(fps)),
