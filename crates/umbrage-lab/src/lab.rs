@@ -194,9 +194,10 @@ impl Lab {
             }
             all.push(self.times);
         }
-        let first = all.first().map_or(0.0, |times| times.volumes);
+        let first = all.first().copied().unwrap_or_default();
         self.times = medians(&all[1.min(repeat)..]);
-        self.times.volumes_first = first;
+        self.times.volumes_first = first.volumes;
+        self.times.frame_first = first.frame;
         self.calls = read_calls(&self.gpu, &run.shadows)?;
         self.held = run.technique.report();
         let light = read_texture(&self.gpu, &hdr)?;

@@ -13,21 +13,45 @@ pub enum Method {
     Counter,
     /// Counter volumes with both caps, z-fail for every light.
     CounterZFail,
+    /// Depth as each light sees it, compared: a cube, or one face for spots and directional lights.
+    ShadowMap {
+        /// Width and height of a face: [`MAP_TEXELS`], in steps of [`MAP_STEP`].
+        texels: u32,
+    },
     /// No shadows: the floor that every frame time is compared with.
     None,
 }
 
+/// Smallest and largest shadow map, in texels a side.
+pub const MAP_TEXELS: std::ops::RangeInclusive<u32> = 256..=4096;
+
+/// Shadow maps have a multiple of so many texels a side.
+pub const MAP_STEP: u32 = 64;
+
 /// A name that is no method's.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("no method is called {name:?}; there are: {}", Method::names().join(", "))]
+#[error(
+    "no method is called {name:?}; there are: {}; maps of other sizes have 256 to 4096 texels a \
+     side, in steps of 64",
+    Method::names().join(", ")
+)]
 pub struct UnknownMethod {
     /// What was asked for.
     pub name: String,
 }
 
 impl Method {
-    /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 3] = [Method::Counter, Method::CounterZFail, Method::None];
+    /// All of them, in the order of `--help`; maps of the usual sizes.
+    pub const ALL: [Method; 8] = [
+        Method::Counter,
+        Method::CounterZFail,
+        Method::ShadowMap { texels: 256 },
+        Method::ShadowMap { texels: 512 },
+        Method::ShadowMap { texels: 1024 },
+        Method::ShadowMap { texels: 2048 },
+        Method::ShadowMap { texels: 4096 },
+        Method::None,
+    ];
 
     /// Their names.
     pub fn names() -> Vec<Cow<'static, str>> {
@@ -39,6 +63,7 @@ impl Method {
         match self {
             Method::Counter => "counter".into(),
             Method::CounterZFail => "counter-zfail".into(),
+            Method::ShadowMap { texels } => format!("shadowmap-{texels}").into(),
             Method::None => "none".into(),
         }
     }
@@ -47,7 +72,7 @@ impl Method {
     pub fn is_exact(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::None => false,
+            Method::ShadowMap { .. } | Method::None => false,
         }
     }
 
@@ -55,7 +80,7 @@ impl Method {
     pub fn has_volumes(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::None => false,
+            Method::ShadowMap { .. } | Method::None => false,
         }
     }
 }
@@ -64,6 +89,13 @@ impl FromStr for Method {
     type Err = UnknownMethod;
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
+        let texels = name.strip_prefix("shadowmap-").map(str::parse);
+        if let Some(Ok(texels)) = texels
+            && MAP_TEXELS.contains(&texels)
+            && texels % MAP_STEP == 0
+        {
+            return Ok(Method::ShadowMap { texels });
+        }
         let mut all = Self::ALL.into_iter();
         all.find(|method| method.name() == name)
             .ok_or_else(|| UnknownMethod { name: name.into() })
@@ -78,6 +110,18 @@ mod tests {
     fn names_lead_back_to_their_methods() {
         for method in Method::ALL {
             assert_eq!(method.name().parse(), Ok(method));
+        }
+        assert_eq!(
+            "shadowmap-1536".parse(),
+            Ok(Method::ShadowMap { texels: 1536 })
+        );
+        for other in [
+            "shadowmap-",
+            "shadowmap-100",
+            "shadowmap-8192",
+            "shadowmap-1000",
+        ] {
+            assert!(other.parse::<Method>().is_err(), "{other}");
         }
         let refused = "stencil".parse::<Method>().unwrap_err().to_string();
         assert!(refused.contains("counter-zfail"), "{refused}");

@@ -4,6 +4,7 @@
 //! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
+mod shadow_map;
 mod stencil;
 mod unshadowed;
 
@@ -19,6 +20,7 @@ use crate::light_pass::LightDraw;
 use crate::method::Method;
 use crate::stage::{Stage, StageLight};
 
+use shadow_map::ShadowMap;
 pub(crate) use stencil::Stencil;
 use unshadowed::Unshadowed;
 
@@ -81,6 +83,7 @@ pub(crate) fn technique(
 ) -> Result<Box<dyn Technique>, GpuError> {
     Ok(match method {
         Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::ShadowMap { texels } => Box::new(ShadowMap::new(gpu, shadows, draw, texels)?),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
 }

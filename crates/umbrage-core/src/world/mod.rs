@@ -16,6 +16,7 @@ mod objects;
 mod planes;
 mod query;
 mod save;
+mod seen;
 pub mod stages;
 mod subset;
 mod validate;
@@ -37,6 +38,7 @@ pub use objects::{Object, ObjectError, ObjectId, Pose};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Layer, Reach, query};
 pub use save::SavedWorldError;
+pub use seen::{Changes, Seen};
 pub use subset::{Members, Subset};
 
 pub(crate) use objects::EMPTY_BOX;
