@@ -262,7 +262,8 @@ pub(crate) struct ViewArgs {
 pub(crate) struct RunArgs {
     /// counter: z-pass from the eye count; counter-zfail: both caps for every light; shadowmap-N:
     /// cube maps of N texels a side, 256 to 4096, and one map for narrow spots and for directional
-    /// lights; none: no shadows
+    /// lights; raytrace: rays over the BVH, in a compute
+    /// shader; none: no shadows
     #[arg(long, value_name = "NAME", default_value = "counter")]
     pub(crate) method: Method,
     /// Frames that times are medians over, after one warm-up

@@ -18,6 +18,8 @@ pub enum Method {
         /// Width and height of a face: [`MAP_TEXELS`], in steps of [`MAP_STEP`].
         texels: u32,
     },
+    /// Any-hit rays over the world's BVH, in a compute shader.
+    RayTrace,
     /// No shadows: the floor that every frame time is compared with.
     None,
 }
@@ -42,7 +44,7 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps of the usual sizes.
-    pub const ALL: [Method; 8] = [
+    pub const ALL: [Method; 9] = [
         Method::Counter,
         Method::CounterZFail,
         Method::ShadowMap { texels: 256 },
@@ -50,6 +52,7 @@ impl Method {
         Method::ShadowMap { texels: 1024 },
         Method::ShadowMap { texels: 2048 },
         Method::ShadowMap { texels: 4096 },
+        Method::RayTrace,
         Method::None,
     ];
 
@@ -64,6 +67,7 @@ impl Method {
             Method::Counter => "counter".into(),
             Method::CounterZFail => "counter-zfail".into(),
             Method::ShadowMap { texels } => format!("shadowmap-{texels}").into(),
+            Method::RayTrace => "raytrace".into(),
             Method::None => "none".into(),
         }
     }
@@ -71,7 +75,7 @@ impl Method {
     /// Whether it promises the oracle's shadows: one wrong pixel-light is a failure.
     pub fn is_exact(self) -> bool {
         match self {
-            Method::Counter | Method::CounterZFail => true,
+            Method::Counter | Method::CounterZFail | Method::RayTrace => true,
             Method::ShadowMap { .. } | Method::None => false,
         }
     }
@@ -80,7 +84,7 @@ impl Method {
     pub fn has_volumes(self) -> bool {
         match self {
             Method::Counter | Method::CounterZFail => true,
-            Method::ShadowMap { .. } | Method::None => false,
+            Method::ShadowMap { .. } | Method::RayTrace | Method::None => false,
         }
     }
 }

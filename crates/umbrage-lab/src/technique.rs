@@ -4,6 +4,8 @@
 //! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
+mod binding;
+mod ray_trace;
 mod shadow_map;
 mod stencil;
 mod unshadowed;
@@ -20,6 +22,7 @@ use crate::light_pass::LightDraw;
 use crate::method::Method;
 use crate::stage::{Stage, StageLight};
 
+use ray_trace::RayTrace;
 use shadow_map::ShadowMap;
 pub(crate) use stencil::Stencil;
 use unshadowed::Unshadowed;
@@ -84,6 +87,7 @@ pub(crate) fn technique(
     Ok(match method {
         Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
         Method::ShadowMap { texels } => Box::new(ShadowMap::new(gpu, shadows, draw, texels)?),
+        Method::RayTrace => Box::new(RayTrace::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
 }

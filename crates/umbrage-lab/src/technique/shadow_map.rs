@@ -11,6 +11,7 @@
 //! when read; see [`Bias`].
 
 mod casters;
+mod draw;
 mod face;
 mod pool;
 #[cfg(test)]
@@ -21,43 +22,24 @@ use std::ops::Range;
 
 use umbrage::{Light, ShadowRenderer};
 use umbrage_core::world::{Reach, Seen};
-use wgpu::util::DeviceExt as _;
 
 use self::casters::{Casters, casters};
+use self::draw::{Bias, CasterPass, Drawing, write_faces};
 use self::face::{Face, face_count, faces};
-use self::pool::{BUDGET, DEPTH, Map, Pool, bytes};
+use self::pool::{BUDGET, Map, Pool, bytes};
 use self::unseen::Unseen;
+use super::binding::{bind, buffer, layout};
 use super::{Given, Technique, TechniqueReport};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
 use crate::run::{FROM_DARK, light_pass};
-
-/// How far a caster stands back from its own surface, and the surface comes forward.
-#[derive(Clone, Copy, Debug)]
-struct Bias {
-    /// Of the caster, in units of the depth that it gains from one texel to the next.
-    slope: f32,
-    /// Of the surface, in texels' widths at its distance; for parallel light, of the map's depth.
-    texels: f32,
-}
-
-impl Bias {
-    /// The fewest wrong pixel-lights in all, on three game maps with maps of 256 and 1024 texels.
-    const BEST: Self = Self {
-        slope: 0.5,
-        texels: 4.0,
-    };
-}
 
 /// Maps of one size, for all lights.
 #[derive(Debug)]
 pub(crate) struct ShadowMap {
     texels: u32,
     lit: LightPass,
-    pipeline: wgpu::RenderPipeline,
-    caster_layout: wgpu::BindGroupLayout,
-    world_layout: wgpu::BindGroupLayout,
-    world: Option<wgpu::BindGroup>,
+    casters: CasterPass,
     map_layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     pool: Pool,
@@ -82,13 +64,6 @@ struct OneLight {
     drawn: u8,
     /// Faces that this view may see.
     wanted: u8,
-}
-
-/// What a light's casters are drawn with.
-#[derive(Debug)]
-struct Drawing {
-    faces: wgpu::Buffer,
-    binding: wgpu::BindGroup,
 }
 
 impl ShadowMap {
@@ -128,17 +103,10 @@ impl ShadowMap {
             wgsl: &wgsl,
             layout: &map_layout,
         };
-        let uniform = wgpu::BufferBindingType::Uniform;
-        let storage = wgpu::BufferBindingType::Storage { read_only: true };
-        let world_layout = buffers_layout(gpu, "shadow map world", [storage, storage]);
-        let caster_layout = buffers_layout(gpu, "shadow map casters", [uniform, storage]);
         Ok(Self {
             texels,
             lit: LightPass::new(gpu, shadows, draw, lit_by),
-            pipeline: pipeline(gpu, &[&world_layout, &caster_layout], bias),
-            caster_layout,
-            world_layout,
-            world: None,
+            casters: CasterPass::new(gpu, bias),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("shadow map"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -218,7 +186,10 @@ impl ShadowMap {
             let kept = &mut self.lights[*number];
             kept.casters = found;
             kept.light = Some(given.lights[*number].light);
-            kept.drawing = Some(drawing(given.gpu, &self.caster_layout, kept)?);
+            kept.drawing = Some(
+                self.casters
+                    .drawing(given.gpu, &kept.casters, &kept.faces)?,
+            );
             // It reads the faces' buffer, which is new.
             kept.reading = None;
         }
@@ -260,47 +231,12 @@ impl ShadowMap {
         self.note = format!("{cached} of {} maps cached", drawn.len());
         Ok(())
     }
-
-    /// Draws the faces `wanted` of a light's map.
-    fn draw_map(&self, encoder: &mut wgpu::CommandEncoder, kept: &OneLight, map: &Map, wanted: u8) {
-        let Some(drawing) = &kept.drawing else {
-            return;
-        };
-        let all = (0..).zip(kept.casters.faces.iter().zip(&map.faces));
-        for (face, (casters, view)) in all.filter(|(face, _)| wanted >> face & 1 == 1) {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("shadow map"),
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view,
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(0.0),
-                        store: wgpu::StoreOp::Store,
-                    }),
-                    stencil_ops: None,
-                }),
-                ..wgpu::RenderPassDescriptor::default()
-            });
-            if casters.is_empty() {
-                continue;
-            }
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, self.world.as_ref(), &[]);
-            pass.set_bind_group(1, &drawing.binding, &[]);
-            pass.draw(3 * casters.start..3 * casters.end, face..face + 1);
-        }
-    }
 }
 
 impl Technique for ShadowMap {
     fn prepare(&mut self, given: &Given<'_>) -> Result<(), GpuError> {
         self.lit.prepare(given);
-        let buffers = given.shadows.world_buffers();
-        let (positions, triangles) = buffers.ok_or(umbrage::RenderError::NoWorld)?;
-        self.world = Some(bind_buffers(
-            given.gpu,
-            &self.world_layout,
-            [positions, triangles],
-        ));
+        self.casters.prepare(given)?;
         self.unseen.update(given)?;
         self.forget_changes(given);
         self.find_casters(given)?;
@@ -324,8 +260,10 @@ impl Technique for ShadowMap {
             .partition(|&number| self.lights[number].map.is_some());
         for &number in &cached {
             let kept = &self.lights[number];
-            if let Some(map) = &kept.map {
-                self.draw_map(encoder, kept, map, kept.wanted & !kept.drawn);
+            if let (Some(map), Some(drawing)) = (&kept.map, &kept.drawing) {
+                let stale = kept.wanted & !kept.drawn;
+                self.casters
+                    .record(encoder, (drawing, &kept.casters), map, stale);
             }
             let kept = &mut self.lights[number];
             kept.drawn |= kept.wanted;
@@ -344,8 +282,9 @@ impl Technique for ShadowMap {
             let mut readings = Vec::new();
             for (&number, map) in some.iter().zip(&self.pool.scratch) {
                 let kept = &self.lights[number];
-                self.draw_map(encoder, kept, map, kept.wanted);
                 readings.push((kept.drawing.as_ref()).map(|drawing| {
+                    self.casters
+                        .record(encoder, (drawing, &kept.casters), map, kept.wanted);
                     read_map(given.gpu, &self.map_layout, &self.sampler, drawing, map)
                 }));
             }
@@ -373,59 +312,6 @@ impl Technique for ShadowMap {
     }
 }
 
-/// Uploads what a light's map is drawn with.
-fn drawing(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    kept: &OneLight,
-) -> Result<Drawing, GpuError> {
-    let triangles = match kept.casters.triangles.is_empty() {
-        true => &[0],
-        false => &kept.casters.triangles[..],
-    };
-    let needed = size_of_val(triangles) as u64;
-    let limit = gpu.device.limits().max_storage_buffer_binding_size;
-    if needed > limit {
-        let what = "casters of a light";
-        return Err(umbrage::RenderError::BufferTooLarge {
-            what,
-            needed,
-            limit,
-        }
-        .into());
-    }
-    let faces = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("shadow map faces"),
-        size: MAP_BYTES,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    write_faces(gpu, &faces, &kept.faces);
-    let list = gpu
-        .device
-        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("shadow map casters"),
-            contents: bytemuck::cast_slice(triangles),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
-    Ok(Drawing {
-        binding: bind_buffers(gpu, layout, [&faces, &list]),
-        faces,
-    })
-}
-
-/// Where `count` stands in `struct ShadowMap` of the shaders, little-endian, and its size.
-const COUNT_AT: usize = 6 * size_of::<Face>();
-const MAP_BYTES: u64 = COUNT_AT as u64 + 16;
-
-fn write_faces(gpu: &Gpu, buffer: &wgpu::Buffer, faces: &[Face]) {
-    let mut map = [0; MAP_BYTES as usize];
-    let bytes: &[u8] = bytemuck::cast_slice(faces);
-    map[..bytes.len()].copy_from_slice(bytes);
-    map[COUNT_AT] = faces.len() as u8;
-    gpu.queue.write_buffer(buffer, 0, &map);
-}
-
 fn read_map(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
@@ -441,70 +327,6 @@ fn read_map(
     bind(gpu, "shadow map", layout, resources)
 }
 
-fn bind_buffers(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    buffers: [&wgpu::Buffer; 2],
-) -> wgpu::BindGroup {
-    let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-    bind(gpu, "shadow map casters", layout, resources)
-}
-
-fn bind<const N: usize>(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    resources: [wgpu::BindingResource<'_>; N],
-) -> wgpu::BindGroup {
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(label),
-        layout,
-        entries: &entries,
-    })
-}
-
-fn layout<const N: usize>(
-    gpu: &Gpu,
-    label: &str,
-    visibility: wgpu::ShaderStages,
-    types: [wgpu::BindingType; N],
-) -> wgpu::BindGroupLayout {
-    let entries: Vec<_> = (0..)
-        .zip(types)
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility,
-            ty,
-            count: None,
-        })
-        .collect();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(label),
-            entries: &entries,
-        })
-}
-
-fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
-    wgpu::BindingType::Buffer {
-        ty,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    }
-}
-
-fn buffers_layout(
-    gpu: &Gpu,
-    label: &str,
-    types: [wgpu::BufferBindingType; 2],
-) -> wgpu::BindGroupLayout {
-    layout(gpu, label, wgpu::ShaderStages::VERTEX, types.map(buffer))
-}
-
 /// What a light's map is read with.
 fn map_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let types = [
@@ -517,50 +339,4 @@ fn map_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
         wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
     ];
     layout(gpu, "shadow map", wgpu::ShaderStages::FRAGMENT, types)
-}
-
-/// Casters, both sides: which of them cast was decided before.
-fn pipeline(gpu: &Gpu, layouts: &[&wgpu::BindGroupLayout; 2], bias: Bias) -> wgpu::RenderPipeline {
-    let source = concat!(
-        include_str!("../shaders/shadow_face.wgsl"),
-        include_str!("../shaders/shadow_caster.wgsl")
-    );
-    let device = &gpu.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("shadow map"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("shadow map"),
-        bind_group_layouts: &layouts.map(Some),
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("shadow map"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState {
-            unclipped_depth: gpu.depth_clamp,
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState {
-                slope_scale: -bias.slope,
-                ..wgpu::DepthBiasState::default()
-            },
-        }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: None,
-        multiview_mask: None,
-        cache: None,
-    })
 }
