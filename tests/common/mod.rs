@@ -280,6 +280,7 @@ pub(crate) fn scene_of(name: &str, mesh: umbrage_scene::Mesh) -> Scene {
             name: name.to_owned(),
             mesh: 0,
             transform: DAffine3::IDENTITY,
+            ..Instance::default()
         }],
         materials: vec![material(false), material(true)],
         ..Scene::default()

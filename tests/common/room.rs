@@ -22,9 +22,12 @@ pub(crate) const SAIL: [Vec3; 3] = [
     Vec3::new(2.0, 3.0, 2.5),
 ];
 
-/// Walls seen from inside, a closed box, a floating cube, a pillar, a double-sided sail, a
-/// single-sided screen, and a fan of three triangles on one edge.
-pub(crate) fn scene() -> Scene {
+/// Walls seen from inside, a closed box, a floating cube and a pillar: two triangles on each edge.
+pub(crate) fn boxes() -> Scene {
+    scene_of("boxes", cuboids())
+}
+
+fn cuboids() -> Mesh {
     let mut mesh = Mesh {
         name: "room".to_owned(),
         ..Mesh::default()
@@ -43,6 +46,12 @@ pub(crate) fn scene() -> Scene {
         Vec3::new(4.5, 5.0, -1.5),
         false,
     );
+    mesh
+}
+
+/// The boxes, a double-sided sail, a single-sided screen, and a fan of three triangles on one edge.
+pub(crate) fn scene() -> Scene {
+    let mut mesh = cuboids();
     triangle(&mut mesh, SAIL, 1);
     let screen = [
         Vec3::new(-5.0, 0.5, 2.0),
@@ -70,7 +79,7 @@ fn triangle(mesh: &mut Mesh, corners: [Vec3; 3], material: u32) {
 }
 
 /// Front where a, b, c, d run counter-clockwise.
-fn quad(mesh: &mut Mesh, [a, b, c, d]: [Vec3; 4], material: u32) {
+pub(crate) fn quad(mesh: &mut Mesh, [a, b, c, d]: [Vec3; 4], material: u32) {
     triangle(mesh, [a, b, c], material);
     triangle(mesh, [a, c, d], material);
 }

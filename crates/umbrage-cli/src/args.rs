@@ -8,13 +8,14 @@ use serde::Serialize;
 use umbrage_lab::Culls;
 use umbrage_lab::gpu::AdapterChoice;
 
+use crate::actor::ActorChoice;
 use crate::error::CliError;
 use crate::json;
-use crate::table::Table;
 use crate::values::{
-    CameraChoice, Instructions, LightChoice, Method, NoCull, Point, RangeChoice, Size, adapter,
-    metres,
+    CameraChoice, Instructions, LightChoice, Method, NamedCamera, NoCull, Point, RangeChoice, Size,
+    adapter, metres, ratio, seconds, time, weld,
 };
+use umbrage_report::Table;
 
 /// Exact shadows from hundreds of lights in large triangle worlds: renders them, measures them
 /// against an oracle, and says which light costs what.
@@ -41,6 +42,7 @@ pub(crate) enum Verb {
     Inspect(InspectArgs),
     Check(CheckArgs),
     Volumes(VolumesArgs),
+    Bench(BenchArgs),
     Gen(GenArgs),
 }
 
@@ -71,6 +73,8 @@ Examples:
       256 lights placed by seed 7, seen from (4, 2, 8) towards (0, 1, 0)
   umbrage render map.glb --world map.world -o map.png
       The first run saves the built world, the next ones map it
+  umbrage render map.glb --actor 'man.glb?at=3,0,-2&turn=90&speed=1.2' --time 2.5 -o walk.png
+      A man set down at (3, 0, -2), facing +X, and three metres on from there
   umbrage render map.glb --heatmap overdraw -o heat.png --json - | jq .totals
       Where the fill goes, and the totals of the frame
   umbrage render map.glb --method none -o lit.png --json floor.json
@@ -103,7 +107,8 @@ const INSPECT_EXAMPLES: &str = "\
 Nothing that is counted here is an error: open edges, edges of many triangles, opposite
 winding, degenerate and duplicate triangles all cast exact shadows.
 
-Blended triangles count too, so a scene with some needs a --world file of its own here.
+Blended triangles and what moves count too, so a scene with some needs a --world file of its own
+here.
 
 Examples:
   umbrage inspect map.glb
@@ -150,6 +155,93 @@ Examples:
   umbrage volumes map.glb --range 1e30 --repeat 9 --json -
       Every triangle a candidate of every light";
 
+/// Plots run time against error: every method on the same frames.
+#[derive(Debug, Args)]
+#[command(after_help = BENCH_EXAMPLES)]
+pub(crate) struct BenchArgs {
+    /// .glb, .gltf or .obj files, or gen:NAME?key=value&...
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<String>,
+    /// Write report.json, report.csv and index.html with plots, tables and pictures of what is
+    /// wrong into this folder
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Methods between commas; those of --method. none is the floor that times are related to
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = DEFAULT_METHODS)]
+    pub(crate) methods: Vec<Method>,
+    /// Compare with the report.json of an earlier run: exit code 1 if a method got slower or less
+    /// exact by more than --ratio
+    #[arg(long, value_name = "report.json")]
+    pub(crate) baseline: Option<PathBuf>,
+    /// What --baseline allows: 1.2 is a fifth more time
+    #[arg(long, value_name = "FACTOR", default_value = "1.2", value_parser = ratio)]
+    pub(crate) ratio: f64,
+    /// Times only: ask no oracle for errors
+    #[arg(long)]
+    pub(crate) no_oracle: bool,
+    /// Seconds after which a row gets no more repeats
+    #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = seconds)]
+    pub(crate) limit: f32,
+    #[command(flatten)]
+    pub(crate) results: ResultArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
+    /// Lights of every scene, as for render
+    #[arg(
+        long,
+        help_heading = "World",
+        value_name = "scene|N[:seed]|FILE.json",
+        default_value = "scene"
+    )]
+    pub(crate) lights: LightChoice,
+    /// Picture size in pixels; may be given several times
+    #[arg(
+        long = "size",
+        help_heading = "View",
+        value_name = "WxH",
+        default_value = "1280x720"
+    )]
+    pub(crate) sizes: Vec<Size>,
+    /// Camera, as for render; may be given several times
+    #[arg(
+        long = "camera",
+        help_heading = "View",
+        value_name = "N|NAME|auto|x,y,z,tx,ty,tz[,fovy_deg]",
+        allow_hyphen_values = true
+    )]
+    pub(crate) given_cameras: Vec<NamedCamera>,
+    /// Distance of the near plane [default: the camera's, else at most 0.1]
+    #[arg(long, help_heading = "View", value_name = "METRES", value_parser = metres)]
+    pub(crate) near: Option<f32>,
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+}
+
+impl BenchArgs {
+    /// The cameras, or the scene's own choice.
+    pub(crate) fn cameras(&self) -> Vec<Option<NamedCamera>> {
+        match &self.given_cameras[..] {
+            [] => vec![None],
+            given => given.iter().cloned().map(Some).collect(),
+        }
+    }
+}
+
+/// One of each kind.
+const DEFAULT_METHODS: &str = "none,counter,counter-zfail";
+
+const BENCH_EXAMPLES: &str = "\
+Every scene is seen by every camera at every size, and drawn there by every method. Errors are
+counted against an exact ray cast of the same view, made once for all methods. Ctrl-C ends the
+run with a valid report of what there is.
+
+Examples:
+  umbrage bench map.glb city.glb -o report
+  umbrage bench map.glb --methods none,counter,shadowmap-1024,raytrace --repeat 9 -o report
+  umbrage bench 'gen:city?triangles=1e4' 'gen:city?triangles=1e5' --size 640x360 --size 1280x720 -o scaling
+      Rows that differ in one thing only become a plot of time over it
+  umbrage bench map.glb --baseline report/report.json --ratio 1.15";
+
 /// Writes a generated world as a .glb file.
 #[derive(Debug, Args)]
 #[command(after_help = GEN_EXAMPLES)]
@@ -185,10 +277,14 @@ pub(crate) struct ResultArgs {
 }
 
 impl ResultArgs {
-    /// Prints `table` and writes `report`; a table never mixes with JSON on standard output.
+    /// Whether tables are printed: they never mix with JSON on standard output.
+    pub(crate) fn shows_tables(&self) -> bool {
+        !self.quiet && !self.json.as_deref().is_some_and(json::is_stdout)
+    }
+
+    /// Prints `table` and writes `report`.
     pub(crate) fn show(&self, table: &Table, report: &impl Serialize) -> Result<(), CliError> {
-        let taken = self.json.as_deref().is_some_and(json::is_stdout);
-        if !self.quiet && !taken {
+        if self.shows_tables() {
             json::print(&table.to_string());
         }
         self.json
@@ -204,8 +300,38 @@ pub(crate) struct Common {
     pub(crate) results: ResultArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
+    /// scene: its own lights, or 64 seeded ones where it has none; or a count with a seed to
+    /// place them by; or a JSON array of lights
+    #[arg(
+        long,
+        help_heading = "World",
+        value_name = "scene|N[:seed]|FILE.json",
+        default_value = "scene"
+    )]
+    pub(crate) lights: LightChoice,
     #[command(flatten)]
     pub(crate) view: ViewArgs,
+    /// counter: z-pass from the eye count; counter-zfail: both caps for every light; none: no
+    /// shadows.
+    ///
+    /// Without a stencil (Roettger, Irion and Ertl): mask-screen doubles and halves an 8-bit mask
+    /// of three values, normalised by three rectangles; it can represent two layers on the way to a
+    /// count, and beyond may show lit what is in shadow. mask-alpha: the same in the frame buffer's
+    /// float alpha, whose exponent counts 16 layers; mask-max: 14, normalised by one rectangle with
+    /// the maximum blend equation, and one more for black shadows. half, quarter: counted in the
+    /// stencil at that part of the resolution, the mask filtered bilinearly; also mask-screen-half
+    /// and so on
+    ///
+    /// shadowmap-N: cubes of N texels a side, 256 to 4096 in steps of 64, two by two texels filtered;
+    /// one map for spots up to 80 degrees and for directional lights. raytrace: rays over the BVH,
+    /// in a compute shader
+    #[arg(
+        long,
+        help_heading = "Run",
+        value_name = "NAME",
+        default_value = "counter"
+    )]
+    pub(crate) method: Method,
     #[command(flatten)]
     pub(crate) run: RunArgs,
 }
@@ -214,10 +340,6 @@ pub(crate) struct Common {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "World")]
 pub(crate) struct WorldArgs {
-    /// scene: its own lights, or 64 seeded ones where it has none; or a count with a seed to
-    /// place them by; or a JSON array of lights
-    #[arg(long, value_name = "scene|N[:seed]|FILE.json", default_value = "scene")]
-    pub(crate) lights: LightChoice,
     /// How far lights shine. auto: each light's own range, or where it has none the distance
     /// at which it falls below 0.01 lux
     #[arg(long, value_name = "auto|METRES", default_value = "auto")]
@@ -230,10 +352,27 @@ pub(crate) struct WorldArgs {
     /// precision [default: near the scene]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) origin: Option<Point>,
+    /// Which vertices are one: those at the same place, or those within a tolerance, which are moved
+    /// onto each other; the oracle sees them moved
+    #[arg(long, value_name = "exact|METRES", default_value = "exact", value_parser = weld)]
+    pub(crate) weld: f32,
     /// Keep the built world in this file: saved if it does not exist, else mapped, in milliseconds.
-    /// It holds for one scene, --casters and --origin; for others it is refused
+    /// It holds for one scene, --casters, --origin and --weld; for others it is refused. What moves
+    /// is not in it
     #[arg(long = "world", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
+    /// Place a second file in the scene, once or many times: it stands at=X,Y,Z, turned about +Y by
+    /// turn=DEGREES, scale=S times its size, and walks along its own heading (+Z before the turn)
+    /// at speed=METRES a second; it plays its first animation. Its lights and cameras are left out
+    #[arg(
+        long = "actor",
+        value_name = "FILE?at=X,Y,Z&turn=DEG&scale=S&speed=M_PER_S"
+    )]
+    pub(crate) actors: Vec<ActorChoice>,
+    /// When: everything animated, and every --actor, is posed as it is this many seconds on.
+    /// Animations loop
+    #[arg(long, value_name = "SECONDS", default_value = "0", allow_hyphen_values = true, value_parser = time)]
+    pub(crate) time: f64,
 }
 
 /// Where the eye is.
@@ -260,12 +399,10 @@ pub(crate) struct ViewArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunArgs {
-    /// counter: z-pass from the eye count; counter-zfail: both caps for every light; shadowmap-N:
-    /// cube maps of N texels a side, 256 to 4096, and one map for narrow spots and for directional
-    /// lights; raytrace: rays over the BVH, in a compute
-    /// shader; none: no shadows
-    #[arg(long, value_name = "NAME", default_value = "counter")]
-    pub(crate) method: Method,
+    /// What masks leave of a light in its shadow: nothing; an ambient term, in one more draw a
+    /// light; or half of it. Other methods know black only
+    #[arg(long, value_enum, default_value_t = Shadows::Black)]
+    pub(crate) shadows: Shadows,
     /// Frames that times are medians over, after one warm-up
     #[arg(long, value_name = "N", default_value = "5")]
     pub(crate) repeat: NonZeroUsize,
@@ -314,6 +451,25 @@ impl From<Casters> for umbrage_lab::stage::Casters {
     }
 }
 
+/// `--shadows`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Shadows {
+    #[default]
+    Black,
+    Ambient,
+    Attenuated,
+}
+
+impl From<Shadows> for umbrage_lab::application::Application {
+    fn from(choice: Shadows) -> Self {
+        match choice {
+            Shadows::Black => Self::Black,
+            Shadows::Ambient => Self::Ambient,
+            Shadows::Attenuated => Self::Attenuated,
+        }
+    }
+}
+
 impl From<Heatmap> for umbrage_lab::heat::Heat {
     fn from(choice: Heatmap) -> Self {
         match choice {
@@ -345,9 +501,10 @@ mod tests {
             panic!("not render")
         };
         assert_eq!(args.common.view.size, Size([1280, 720]));
-        assert_eq!(args.common.world.lights, LightChoice::Scene);
-        assert_eq!(args.common.run.method.0.name(), "counter");
+        assert_eq!(args.common.lights, LightChoice::Scene);
+        assert_eq!(args.common.method.0.name(), "counter");
         assert_eq!(args.common.run.repeat.get(), 5);
+        assert_eq!(args.common.world.weld, 0.0);
         assert!(args.common.view.camera.is_none() && args.common.results.json.is_none());
     }
 
@@ -374,6 +531,8 @@ mod tests {
             "umbrage render x.glb --heatmap overdraw",
             "umbrage render x.glb --repeat 0",
             "umbrage inspect x.glb --lights lots",
+            "umbrage inspect x.glb --weld close",
+            "umbrage inspect x.glb --weld -1",
             "umbrage gen city",
             "umbrage dance x.glb",
         ] {

@@ -5,9 +5,11 @@ use std::path::Path;
 
 use thiserror::Error;
 use umbrage_core::world::SavedWorldError;
+use umbrage_lab::application::NoMask;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
 use umbrage_lab::stage::StageError;
+use umbrage_report::bench::BaselineError;
 
 /// The one error of the command line. Wrong options never get here: clap reports them.
 #[derive(Debug, Error)]
@@ -69,6 +71,18 @@ impl From<GpuError> for CliError {
     }
 }
 
+impl From<NoMask> for CliError {
+    fn from(error: NoMask) -> Self {
+        CliError::BadInput(error.to_string())
+    }
+}
+
+impl From<BaselineError> for CliError {
+    fn from(error: BaselineError) -> Self {
+        CliError::BadInput(error.to_string())
+    }
+}
+
 impl From<PictureError> for CliError {
     fn from(error: PictureError) -> Self {
         CliError::BadInput(error.to_string())
@@ -84,5 +98,13 @@ mod tests {
         assert_eq!(CliError::CheckFailed(String::new()).exit_code(), 1);
         assert_eq!(CliError::BadInput(String::new()).exit_code(), 2);
         assert_eq!(CliError::NoAdapter(String::new()).exit_code(), 3);
+    }
+
+    #[test]
+    fn a_baseline_that_is_none_is_bad_input() {
+        let error = umbrage_report::bench::read(Path::new("no/such/report.json")).unwrap_err();
+        let error = CliError::from(error);
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("no/such/report.json"), "{error}");
     }
 }

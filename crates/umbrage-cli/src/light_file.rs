@@ -139,6 +139,7 @@ fn to_light(item: Item, number: usize) -> Result<Light, String> {
         intensity: item.intensity,
         range: item.range,
         kind,
+        node: None,
     })
 }
 

@@ -4,6 +4,7 @@
 //! 3 no usable adapter. Each verb has its file in `verbs/`.
 #![forbid(unsafe_code)]
 
+mod actor;
 mod args;
 mod error;
 mod json;
@@ -11,7 +12,6 @@ mod light_file;
 mod progress;
 mod report;
 mod setting;
-mod table;
 mod values;
 mod verbs;
 
@@ -28,6 +28,7 @@ fn main() -> ExitCode {
         Verb::Inspect(args) => verbs::inspect::run(&args),
         Verb::Check(args) => verbs::check::run(&args),
         Verb::Volumes(args) => verbs::volumes::run(&args),
+        Verb::Bench(args) => verbs::bench::run(&args),
         Verb::Gen(args) => verbs::generate::run(&args),
     };
     match done {

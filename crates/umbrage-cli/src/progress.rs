@@ -1,6 +1,7 @@
 //! How far a long step is, on standard error.
 
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -47,6 +48,51 @@ impl Progress for Bar {
     }
 }
 
+/// A bar over many steps of some seconds each, with the time that is left.
+#[derive(Debug)]
+pub(crate) struct Steps {
+    bar: Bar,
+    /// Of the step at hand, in [`Steps::PARTS`] a step.
+    begun: AtomicU64,
+}
+
+impl Steps {
+    const PARTS: u64 = 1000;
+
+    pub(crate) fn new(quiet: bool, steps: usize) -> Self {
+        let bar = Bar::new(quiet);
+        if let Ok(style) = ProgressStyle::with_template(TIMED) {
+            bar.0.set_style(style);
+        }
+        bar.0.set_length(steps as u64 * Self::PARTS);
+        Self {
+            bar,
+            begun: AtomicU64::new(0),
+        }
+    }
+
+    /// Says what is being done.
+    pub(crate) fn now(&self, scene: &str, what: &str) {
+        let name = scene.rsplit('/').next().unwrap_or(scene);
+        self.bar.0.set_message(format!("{name}: {what}"));
+    }
+
+    /// A share of the step at hand is done; later calls with less change nothing.
+    pub(crate) fn within(&self, share: f64) {
+        let part = (share.clamp(0.0, 1.0) * Self::PARTS as f64) as u64;
+        let done = self.begun.load(Ordering::Relaxed) + part;
+        self.bar.0.set_position(done.max(self.bar.0.position()));
+    }
+
+    /// The step at hand is done.
+    pub(crate) fn step(&self) {
+        let done = self.begun.fetch_add(Self::PARTS, Ordering::Relaxed) + Self::PARTS;
+        self.bar.0.set_position(done);
+    }
+}
+
+const TIMED: &str = "{msg:<44} {wide_bar} {percent:>3} %, {eta} left";
+
 impl Drop for Bar {
     fn drop(&mut self) {
         self.0.finish_and_clear();
@@ -64,5 +110,21 @@ mod tests {
         bar.advance(4);
         assert!(bar.0.is_hidden());
         assert_eq!((bar.0.position(), bar.0.length()), (4, Some(10)));
+    }
+
+    #[test]
+    fn steps_count_whole_and_in_part_and_never_go_back() {
+        assert!(ProgressStyle::with_template(TIMED).is_ok());
+        let steps = Steps::new(true, 4);
+        steps.now("a/b.glb", "oracle");
+        steps.within(0.5);
+        steps.within(0.25);
+        assert_eq!(steps.bar.0.position(), 500);
+        steps.step();
+        steps.within(0.1);
+        assert_eq!(
+            (steps.bar.0.position(), steps.bar.0.length()),
+            (1100, Some(4000))
+        );
     }
 }

@@ -116,8 +116,8 @@ pub(crate) struct InspectReport {
     pub(crate) bytes_per_triangle: f64,
     /// `bytes_per_triangle` by array of the world.
     pub(crate) memory: BTreeMap<&'static str, f64>,
-    /// What edges that point to their faces take where `sides` and `clusters` stand here, a
-    /// triangle.
+    /// What edges that point to their faces take, with the `sides` that they need too, where
+    /// `sides` and `clusters` stand here, a triangle.
     pub(crate) face_pointer_bytes_per_triangle: f64,
     /// That the scene brings itself.
     pub(crate) lights: u64,
@@ -167,6 +167,10 @@ pub(crate) struct CheckReport {
     pub(crate) samples: u64,
     pub(crate) wrong: u64,
     pub(crate) ambiguous: u64,
+    /// Pixel-lights whose layers the method's mask cannot represent, of those in the light's range,
+    /// facing it or not; no other can be wrong. Null for methods without such a limit, and at lower
+    /// resolutions.
+    pub(crate) unrepresentable: Option<u64>,
     pub(crate) tolerance_px: f64,
     pub(crate) tolerance_depth: f64,
     /// Whether every light's volume is closed, counted in integers.

@@ -13,7 +13,8 @@ use umbrage_lab::seeded_lights::seeded_lights;
 use umbrage_lab::stage::{Stage, StageLight};
 use umbrage_scene::{Camera, Progress};
 
-use crate::args::{Common, ViewArgs, WorldArgs};
+use crate::actor;
+use crate::args::{Common, RunArgs, WorldArgs};
 use crate::error::CliError;
 use crate::light_file;
 use crate::progress::Bar;
@@ -35,25 +36,33 @@ pub(crate) struct Setting {
 impl Setting {
     /// Loads `scene` and settles casters, lights and view.
     pub(crate) fn new(scene: &str, common: &Common) -> Result<Self, CliError> {
-        use_threads(common);
+        common.method.0.check(common.run.shadows.into())?;
+        use_threads(&common.run);
         let bar = Bar::new(common.results.quiet);
-        let scene = umbrage_scene::open(scene, &bar)?;
-        let world_file = common.world.file.as_deref();
-        bar.stage(world_step(world_file), 0);
-        let origin = common.world.origin.map(|point| point.0);
-        let casters = common.world.casters.into();
-        let stage = Stage::with_world_file(scene, casters, origin, world_file)?;
-        let plain = as_materials_say(&stage);
+        let stage = stage(scene, &common.world, &bar)?;
         bar.stage("place lights", 0);
-        let lights = lights(&stage, &plain, &common.world)?;
+        let lights = lights(&stage, &common.lights, &common.world)?;
         bar.stage("place camera", 0);
-        let view = view(&stage, &plain, &lights, &common.view)?;
+        let (camera, size) = (common.view.camera.as_ref(), common.view.size.0);
+        let view = view(&stage, &lights, camera, size, common.view.near)?;
         Ok(Self {
             stage,
             lights,
             view,
         })
     }
+}
+
+/// Loads a scene with its actors, builds its world, and poses everything.
+pub(crate) fn stage(scene: &str, args: &WorldArgs, bar: &Bar) -> Result<Stage, CliError> {
+    let scene = actor::open(scene, &args.actors, bar)?;
+    let world_file = args.file.as_deref();
+    bar.stage(world_step(world_file), 0);
+    let origin = args.origin.map(|point| point.0);
+    let casters = args.casters.into();
+    let mut stage = Stage::with_world_file(scene, casters, origin, args.weld, world_file)?;
+    stage.set_time(args.time)?;
+    Ok(stage)
 }
 
 /// What `--world` makes of the step to a world, for those who wait.
@@ -66,8 +75,8 @@ pub(crate) fn world_step(world_file: Option<&Path>) -> &'static str {
 }
 
 /// Makes `--threads` the size of the pool that everything here runs on.
-pub(crate) fn use_threads(common: &Common) {
-    if let Some(threads) = common.run.threads {
+pub(crate) fn use_threads(run: &RunArgs) {
+    if let Some(threads) = run.threads {
         // Fails only if the pool is in use already, and this is the first thing a verb does.
         let _ = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())
@@ -75,30 +84,37 @@ pub(crate) fn use_threads(common: &Common) {
     }
 }
 
-/// The mesh with the casting rules of its materials: what is inside and outside does not depend
-/// on `--casters`, so neither do seeded lights nor the automatic camera.
+/// The scenery with the casting rules of its materials: what is inside and outside depends neither
+/// on `--casters` nor on `--time`, so neither do seeded lights nor the automatic camera.
 fn as_materials_say(stage: &Stage) -> Cow<'_, Mesh> {
     let rule = |&m: &u32| match stage.scene.materials[m as usize].double_sided {
         true => Casting::Both,
         false => Casting::Front,
     };
-    let casting: Vec<Casting> = stage.soup.material.iter().map(rule).collect();
-    if casting == stage.mesh.casting {
-        return Cow::Borrowed(&stage.mesh);
+    let mesh = stage.scenery();
+    let materials = stage.soup.material.iter().take(mesh.triangles.len());
+    let casting: Vec<Casting> = materials.map(rule).collect();
+    if casting == mesh.casting {
+        return mesh;
     }
     Cow::Owned(Mesh {
         casting,
-        ..stage.mesh.clone()
+        ..mesh.into_owned()
     })
 }
 
-fn lights(stage: &Stage, plain: &Mesh, args: &WorldArgs) -> Result<Vec<StageLight>, CliError> {
+/// The lights that were chosen, on the stage.
+pub(crate) fn lights(
+    stage: &Stage,
+    choice: &LightChoice,
+    args: &WorldArgs,
+) -> Result<Vec<StageLight>, CliError> {
     let range = match args.range {
         RangeChoice::Auto => None,
         RangeChoice::Metres(range) => Some(range),
     };
     let seeded = |count, seed| {
-        let placed = seeded_lights(plain, count, seed);
+        let placed = seeded_lights(&as_materials_say(stage), count, seed);
         let placed = placed.into_iter().enumerate();
         placed
             .map(|(number, (position, range))| {
@@ -106,7 +122,7 @@ fn lights(stage: &Stage, plain: &Mesh, args: &WorldArgs) -> Result<Vec<StageLigh
             })
             .collect()
     };
-    let chosen: Cow<'_, [umbrage_scene::Light]> = match &args.lights {
+    let chosen: Cow<'_, [umbrage_scene::Light]> = match choice {
         LightChoice::Scene if !stage.scene.lights.is_empty() => Cow::Borrowed(&stage.scene.lights),
         LightChoice::Scene => seeded(DEFAULT_SEEDED, 0),
         LightChoice::Seeded { count, seed } => seeded(*count, *seed),
@@ -133,22 +149,25 @@ fn seeded_light(number: usize, position: DVec3, range: f32) -> umbrage_scene::Li
     }
 }
 
-fn view(
+/// The chosen camera's view; without a choice that of the scene's first camera, or automatic.
+pub(crate) fn view(
     stage: &Stage,
-    plain: &Mesh,
     lights: &[StageLight],
-    args: &ViewArgs,
+    camera: Option<&CameraChoice>,
+    size: [u32; 2],
+    near: Option<f32>,
 ) -> Result<View, CliError> {
     let default_fovy = DEFAULT_FOVY_DEG.to_radians();
     let cameras = &stage.scene.cameras;
     let auto = || {
-        let aspect = args.size.0[0] as f32 / args.size.0[1] as f32;
+        let aspect = size[0] as f32 / size[1] as f32;
         let shadow_lights: Vec<Light> = lights.iter().map(|light| light.light).collect();
-        let found = auto_camera(plain, &shadow_lights, default_fovy as f32, aspect);
+        let plain = as_materials_say(stage);
+        let found = auto_camera(&plain, &shadow_lights, default_fovy as f32, aspect);
         let [eye, target] = [found.eye, found.target].map(|p| p.as_dvec3() + stage.soup.origin);
         Camera::look_at("auto", eye, target, default_fovy)
     };
-    let camera: Camera = match &args.camera {
+    let camera: Camera = match camera {
         None => cameras.first().cloned().unwrap_or_else(auto),
         Some(CameraChoice::Auto) => auto(),
         Some(CameraChoice::Free {
@@ -168,17 +187,12 @@ fn view(
             named.cloned().ok_or_else(|| no_camera(name, cameras))?
         }
     };
-    let near = args
-        .near
+    let near = near
         .or(camera.near.map(|near| near as f32))
         .filter(|near| *near > 0.0);
-    let near = near.unwrap_or_else(|| (1e-4 * diagonal(&stage.mesh)).clamp(f32::MIN_POSITIVE, 0.1));
-    Ok(to_view(
-        &camera,
-        stage.local(camera.position),
-        near,
-        args.size.0,
-    ))
+    let near =
+        near.unwrap_or_else(|| (1e-4 * diagonal(&stage.scenery())).clamp(f32::MIN_POSITIVE, 0.1));
+    Ok(to_view(&camera, stage.local(camera.position), near, size))
 }
 
 fn to_view(camera: &Camera, eye: Vec3, near: f32, size: [u32; 2]) -> View {

@@ -145,6 +145,24 @@ impl FromStr for CameraChoice {
     }
 }
 
+/// A camera with the text it was chosen by, for reports.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NamedCamera {
+    pub(crate) text: String,
+    pub(crate) choice: CameraChoice,
+}
+
+impl FromStr for NamedCamera {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Ok(Self {
+            text: text.to_owned(),
+            choice: text.parse()?,
+        })
+    }
+}
+
 /// `--lights`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LightChoice {
@@ -206,6 +224,38 @@ pub(crate) fn metres(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(length) if length > 0.0 && length.is_finite() => Ok(length),
         _ => Err("expected a length in metres, above 0".to_owned()),
+    }
+}
+
+/// `--time`, in seconds.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(time) if time.is_finite() => Ok(time),
+        _ => Err("expected a time in seconds, as in 2.5".to_owned()),
+    }
+}
+
+/// `--ratio`.
+pub(crate) fn ratio(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(factor) if factor >= 1.0 && factor.is_finite() => Ok(factor),
+        _ => Err("expected a factor of at least 1, as in 1.2 for a fifth more".to_owned()),
+    }
+}
+
+/// `--limit`.
+pub(crate) fn seconds(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(time) if time >= 0.0 && time.is_finite() => Ok(time),
+        _ => Err("expected seconds, 0 or more".to_owned()),
+    }
+}
+
+/// `--weld`: a tolerance in metres, 0 for exact.
+pub(crate) fn weld(text: &str) -> Result<f32, String> {
+    match text {
+        "exact" => Ok(0.0),
+        _ => metres(text).map_err(|why| format!("{why}, or exact")),
     }
 }
 

@@ -1,98 +1,11 @@
 //! The binary as scripts see it: exit codes, JSON keys, and files that are whole or not there.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
+use std::path::Path;
+
+use common::{Folder, assert_keys, json, png_size, refused, umbrage};
 use serde_json::Value;
-
-/// A folder of its own for each test, removed with it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("umbrage-{test}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a temporary folder");
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).to_string_lossy().into_owned()
-    }
-
-    fn files(&self) -> Vec<String> {
-        let entries = self.0.read_dir().expect("the folder is there");
-        let mut names: Vec<String> = entries
-            .map(|e| e.expect("an entry").file_name().to_string_lossy().into())
-            .collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // Left behind at worst: it is the system's temporary folder.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn umbrage(arguments: &[&str]) -> Output {
-    let binary = env!("CARGO_BIN_EXE_umbrage");
-    Command::new(binary)
-        .args(arguments)
-        .output()
-        .expect("the binary starts")
-}
-
-/// Runs and gives what `--json -` printed.
-fn json(code: i32, arguments: &[&str]) -> Value {
-    let output = umbrage(&[arguments, &["--json", "-", "--quiet"]].concat());
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{arguments:?}: {e}"))
-}
-
-/// Refused: this code, a message, nothing on standard output, no panic.
-fn refused(code: i32, arguments: &[&str]) -> String {
-    let output = umbrage(arguments);
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
-    assert!(
-        !errors.trim().is_empty() && !errors.contains("panicked"),
-        "{arguments:?}: {errors}"
-    );
-    assert!(output.stdout.is_empty(), "{arguments:?} printed results");
-    errors
-}
-
-fn assert_keys(value: &Value, keys: &str) {
-    let object = value
-        .as_object()
-        .unwrap_or_else(|| panic!("no object: {value}"));
-    for key in keys.split(' ') {
-        assert!(
-            object.contains_key(key),
-            "{key} missing in {:?}",
-            object.keys()
-        );
-    }
-}
-
-/// Width and height of a PNG that decodes whole.
-fn png_size(path: &str) -> (u32, u32) {
-    let bytes = std::fs::read(path).expect("a picture");
-    assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
-    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
-        .read_info()
-        .expect("a PNG");
-    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-    let info = reader.next_frame(&mut pixels).expect("whole image data");
-    assert!(
-        pixels.iter().any(|&p| p != pixels[0]),
-        "{path} shows nothing"
-    );
-    (info.width, info.height)
-}
 
 const SOUP: &str = "gen:soup?triangles=300&lights=5&seed=3";
 const SMALL: [&str; 2] = ["--size", "128x96"];
@@ -159,9 +72,13 @@ fn inspect_counts() {
     assert!((sum - report["bytes_per_triangle"].as_f64().expect("bytes")).abs() < 1e-6);
     assert_eq!(report["memory"]["triangles"], 12.0);
     assert_eq!(report["memory"]["edges"], 8.0 * 56.0 / 32.0);
-    // 8 bytes of faces and 4 of edge number an edge, 12 of edges a triangle.
-    let face_pointers = 12.0 + 12.0 * 56.0 / 32.0;
+    // 8 bytes of faces an edge, and the triangles' edges.
+    let face_pointers = 8.0 * 56.0 / 32.0 + report["memory"]["sides"].as_f64().expect("bytes");
     assert_eq!(report["face_pointer_bytes_per_triangle"], face_pointers);
+    // Wider than a cell, and nothing is left.
+    let wide = json(0, &["inspect", "gen:field?n=4&lights=2", "--weld", "1e4"]);
+    assert_eq!(wide["degenerate_triangles"], 32);
+    assert_eq!(wide["welded_vertices"], 1);
     // 4 x 4 cells of two triangles: 2 * 4 * 5 + 16 edges, of which 16 are on the border.
     assert_eq!(report["triangles"], 32);
     assert_eq!(report["welded_vertices"], 25);
@@ -329,6 +246,25 @@ fn a_world_is_kept_in_a_file() {
 }
 
 #[test]
+fn masks_say_what_they_cannot_represent_and_others_make_none() {
+    let check = |method: &str| {
+        json(
+            0,
+            &[&["check", SOUP, "--method", method], &SMALL[..]].concat(),
+        )
+    };
+    let screen = check("mask-screen");
+    assert!(
+        screen["unrepresentable"].as_u64().expect("a count") >= screen["wrong"].as_u64().unwrap()
+    );
+    assert_eq!(check("mask-alpha")["wrong"], 0);
+    assert!(check("half")["unrepresentable"].is_null());
+    let options = ["render", SOUP, "--shadows", "attenuated"];
+    let message = refused(2, &options);
+    assert!(message.contains("counter makes no mask"), "{message}");
+}
+
+#[test]
 fn no_such_adapter_exits_with_3() {
     let folder = Folder::new("adapter");
     let picture = folder.path("out.png");
@@ -403,4 +339,48 @@ fn volumes_compares_methods_and_instructions() {
         );
     }
     refused(2, &["volumes", SOUP, "--instructions", "sse"]);
+}
+
+#[test]
+fn actors_stand_in_a_scene_and_walk_with_time() {
+    let man = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/actors/cesium_man.glb"
+    );
+    let field = "gen:field?n=8&lights=3";
+    let actor = format!("{man}?at=0,1,0&turn=45&speed=0.5");
+    let placed = |verb: &str, time: &str| {
+        let common = ["--actor", &actor, "--time", time];
+        json(0, &[&[verb, field][..], &common].concat())
+    };
+    let alone = json(0, &["inspect", field]);
+    let both = placed("inspect", "0");
+    let more = both["triangles"].as_u64().unwrap() - alone["triangles"].as_u64().unwrap();
+    assert_eq!(more, 4672);
+    assert_ne!(
+        placed("volumes", "0")["methods"][0]["quads"],
+        placed("volumes", "1.3")["methods"][0]["quads"]
+    );
+    let size = ["--size", "64x48", "--actor", &actor, "--time", "0.7"];
+    let report = json(0, &[&["check", field][..], &size].concat());
+    assert_eq!(report["wrong"], 0);
+    // The world of what never moves is one file, whatever walks through it.
+    let folder = Folder::new("actors");
+    let file = folder.path("field.world");
+    for extra in [
+        &[][..],
+        &["--actor", &actor],
+        &["--actor", &actor, "--time", "9"],
+    ] {
+        let common = ["--world", &file, "--size", "32x32", "--repeat", "1"];
+        json(0, &[&["render", field][..], &common, extra].concat());
+    }
+    for (option, value, said) in [
+        ("--actor", "man.glb?size=2", "known are at=X,Y,Z"),
+        ("--actor", "nowhere.glb", "nowhere.glb"),
+        ("--time", "noon", "expected a time in seconds"),
+    ] {
+        let error = refused(2, &["render", field, option, value]);
+        assert!(error.contains(said), "{error}");
+    }
 }

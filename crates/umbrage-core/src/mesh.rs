@@ -15,7 +15,8 @@ pub enum Casting {
     /// Casts whichever side faces the light: glTF `doubleSided`.
     Both = 2,
     /// Casts where its back faces the light: volumes from the faces turned away
-    /// (Aldridge and Woods 2004, section 2, figure 2).
+    /// (Aldridge and Woods 2004, section 2, figure 2). On a closed mesh their sides are those of
+    /// [`Casting::Front`], and outside of it so are their shadows; see [`volume`](crate::volume).
     Back = 3,
 }
 

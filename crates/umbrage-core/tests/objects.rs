@@ -3,60 +3,13 @@
 
 mod common;
 
-use std::collections::BTreeMap;
-
-use common::{Random, dense_soup, point_light, spot, strewn_soup, sun};
+use common::{
+    Random, build, builder, chain, dense_soup, lights, point_light, random_pose, strewn_soup,
+};
 use glam::{DQuat, DVec3, Vec3};
 use umbrage_core::volume::{VolumeBuilder, Volumes};
 use umbrage_core::world::{LANES, Layer, ObjectError, ObjectId, Pose, Reach, Subset, World, query};
-use umbrage_core::{Cull, Culls, Light, Mesh};
-
-fn random_pose(r: &mut Random) -> Pose {
-    let axis = r.point().as_dvec3().normalize_or(DVec3::Y);
-    Pose {
-        rotation: DQuat::from_axis_angle(axis, 3.0 * f64::from(r.signed())),
-        translation: 2.0 * r.point().as_dvec3(),
-    }
-}
-
-fn lights(r: &mut Random, count: usize) -> Vec<Light> {
-    let mut lights = vec![sun(Vec3::new(0.3, -1.0, 0.2))];
-    for i in 1..count {
-        let (at, range) = (2.5 * r.point(), 0.4 + 0.3 * r.signed());
-        lights.push(match i % 3 {
-            0 => spot(at, r.point(), 0.7, 2.0 * range),
-            _ => point_light(at, range),
-        });
-    }
-    lights
-}
-
-type Corners = [[u32; 3]; 3];
-
-fn bits(corners: [Vec3; 3]) -> Corners {
-    corners.map(|p| p.to_array().map(f32::to_bits))
-}
-
-/// The chain of a light by where its triangles stand, whatever they are numbered.
-fn chain(world: &World, volumes: &Volumes, light: usize) -> BTreeMap<(Corners, i32), usize> {
-    let mut found = BTreeMap::new();
-    for t in volumes.chain_triangles(light) {
-        let key = (bits(world.corners(t.triangle())), t.coefficient());
-        *found.entry(key).or_default() += 1;
-    }
-    found
-}
-
-/// Without hidden casters, whose choice depends on the tree.
-fn builder() -> VolumeBuilder {
-    VolumeBuilder::new(Culls::EVERY.without(Cull::Hidden))
-}
-
-fn build(world: &World, lights: &[Light]) -> Volumes {
-    let mut volumes = Volumes::default();
-    builder().build(world, lights, |_| true, &mut volumes);
-    volumes
-}
+use umbrage_core::{Cull, Light, Mesh};
 
 /// A world and what happens to it.
 struct Play {

@@ -235,3 +235,76 @@ fn validators_see_each_broken_invariant() {
         WorldFault::Range { .. }
     ));
 }
+
+/// The rule, all against all.
+fn snapped(positions: &[Vec3], tolerance: f64) -> Vec<Vec3> {
+    let mut staying: Vec<Vec3> = Vec::new();
+    let snap = |&p: &Vec3| {
+        let near = |q: &&Vec3| (q.as_dvec3() - p.as_dvec3()).length() <= tolerance;
+        match staying.iter().find(near) {
+            Some(&q) => q,
+            None => {
+                staying.push(p);
+                p
+            }
+        }
+    };
+    positions.iter().map(snap).collect()
+}
+
+#[test]
+fn welding_by_tolerance_moves_to_the_first_that_is_near() {
+    for (seed, far) in (0..12).zip([0.0, 1e3, -1e6].into_iter().cycle()) {
+        let mut soup = strewn_soup(seed, 300, 0.1);
+        for p in &mut soup.positions {
+            *p += Vec3::new(far, 0.0, -far);
+        }
+        for tolerance in [1e-30f32, 1e-6, 0.003, 0.02, 0.3, 10.0, 1e30] {
+            let mut welded = soup.clone();
+            let moved = welded.weld_within(tolerance).unwrap();
+            assert!(welded.positions == snapped(&soup.positions, tolerance.into()));
+            let pairs = soup.positions.iter().zip(&welded.positions);
+            assert_eq!(moved, pairs.filter(|(p, q)| p != q).count());
+            assert_eq!(welded.clone().weld_within(tolerance), Ok(0));
+            let world = World::build(&welded).unwrap();
+            assert!(world.triangles.len() <= soup.triangles.len());
+        }
+    }
+}
+
+/// Two cells of a floor that miss each other by a hair share an edge once they are welded.
+#[test]
+fn welding_by_tolerance_closes_cracks() {
+    let mut floor = grid(2);
+    for (i, p) in floor.positions.iter_mut().enumerate() {
+        p.x += 1e-5 * (i % 7) as f32;
+    }
+    let cracked = World::build(&floor).unwrap().report;
+    assert!(cracked.edges_by_triangles[0] > 40);
+    let before = floor.fingerprint();
+    assert!(floor.weld_within(1e-3).unwrap() > 0);
+    let whole = World::build(&floor).unwrap().report;
+    assert_eq!(whole.edges_by_triangles, [16, 40, 0, 0]);
+    assert_eq!((whole.welded_vertices, whole.degenerate_triangles), (25, 0));
+    // So a saved world of one is not taken for the other's.
+    assert_ne!(floor.fingerprint(), before);
+    // Wider than a cell, nothing is left of it.
+    floor.weld_within(100.0).unwrap();
+    let gone = World::build(&floor).unwrap().report;
+    assert_eq!((gone.triangles, gone.degenerate_triangles), (0, 32));
+}
+
+#[test]
+fn a_tolerance_is_a_length() {
+    for tolerance in [-1.0, f32::NAN, f32::INFINITY] {
+        let refused = grid(1).weld_within(tolerance).unwrap_err();
+        assert!(matches!(refused, WorldError::Tolerance { .. }));
+        assert!(refused.to_string().contains("finite length"));
+    }
+    let mut floor = grid(1);
+    floor.positions[0].x = f32::NAN;
+    let kept = floor.clone();
+    assert_eq!(floor.weld_within(0.0), Ok(0));
+    assert_eq!(floor.weld_within(1e-3), Ok(0));
+    assert!(World::build(&floor).is_err() && kept.triangles == floor.triangles);
+}

@@ -103,6 +103,9 @@ pub struct GBufferPass {
     pipeline: wgpu::RenderPipeline,
     bind_group: wgpu::BindGroup,
     corners: wgpu::Buffer,
+    normals: wgpu::Buffer,
+    /// The stage's time that `normals` are of.
+    time_s: f64,
     /// A base colour texture and the corners that use it.
     batches: Vec<(wgpu::BindGroup, std::ops::Range<u32>)>,
 }
@@ -129,25 +132,25 @@ impl GBufferPass {
                 device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                     label: Some(label),
                     contents: if bytes.is_empty() { &[0; 32] } else { bytes },
-                    usage: wgpu::BufferUsages::STORAGE,
+                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
                 }),
             )
         };
-        // Objects come after the fixed triangles; they have the first material, and no more.
-        let fixed = &world.source[..world.fixed.triangles.end as usize];
-        let sources = || fixed.iter().map(|t| *t as usize);
-        let triangles_in_all = world.triangles.len();
-        let mut material: Vec<u32> = sources().map(|t| soup.material[t]).collect();
-        material.resize(triangles_in_all, 0);
+        // Objects that are no actors have the first material, the normals of their faces, no texture.
+        let surfaces = stage.surfaces();
+        let sources = || surfaces.iter().map(|t| t.map(|t| t as usize));
+        let material: Vec<u32> = sources()
+            .map(|t| t.map_or(0, |t| soup.material[t]))
+            .collect();
         let mut normals = vec![0u32];
         if !soup.normals.is_empty() {
-            normals = sources().flat_map(|t| soup.normals[t]).map(pack).collect();
-            normals.resize(3 * triangles_in_all, 0);
+            let packed = |t: Option<usize>| t.map_or([0; 3], |t| soup.normals[t].map(pack));
+            normals = sources().flat_map(packed).collect();
         }
         let mut uvs = vec![glam::Vec2::ZERO];
         if !soup.uvs.is_empty() {
-            uvs = sources().flat_map(|t| soup.uvs[t]).collect();
-            uvs.resize(3 * triangles_in_all, glam::Vec2::ZERO);
+            let of = |t: Option<usize>| t.map_or([glam::Vec2::ZERO; 3], |t| soup.uvs[t]);
+            uvs = sources().flat_map(of).collect();
         }
         let materials: Vec<[[f32; 4]; 2]> = stage
             .scene
@@ -155,7 +158,7 @@ impl GBufferPass {
             .iter()
             .map(|m| [m.base_color.to_array(), [m.roughness, m.metallic, 0.0, 0.0]])
             .collect();
-        let attributes = [
+        let [materials_of, normals, uvs, materials] = [
             storage("triangle materials", bytemuck::cast_slice(&material))?,
             storage("normals", bytemuck::cast_slice(&normals))?,
             storage("texture coordinates", bytemuck::cast_slice(&uvs))?,
@@ -173,7 +176,7 @@ impl GBufferPass {
         let pipeline = pipeline(gpu);
         let buffers = [shadows.view_buffer(), positions, triangles]
             .into_iter()
-            .chain(&attributes);
+            .chain([&materials_of, &normals, &uvs, &materials]);
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -205,9 +208,29 @@ impl GBufferPass {
                 }),
                 usage: wgpu::BufferUsages::INDEX,
             }),
+            normals,
+            time_s: stage.time_s,
             batches,
             pipeline,
         })
+    }
+
+    /// Brings the normals of actors in step with the stage's time. Positions are the shadow
+    /// renderer's.
+    pub fn update(&mut self, gpu: &Gpu, stage: &Stage) {
+        if self.time_s == stage.time_s || stage.soup.normals.is_empty() {
+            return;
+        }
+        self.time_s = stage.time_s;
+        for (actor, range) in (stage.actors.iter()).filter_map(|a| Some((a, stage.share(a)?))) {
+            let sources = stage.world.source[range.clone()].iter();
+            let normals = sources
+                .flat_map(|t| stage.soup.normals[(actor.triangles.start + t) as usize].map(pack));
+            let normals: Vec<u32> = normals.collect();
+            let start = (3 * range.start * size_of::<u32>()) as u64;
+            let bytes = bytemuck::cast_slice(&normals);
+            gpu.queue.write_buffer(&self.normals, start, bytes);
+        }
     }
 
     /// Clears and fills the targets.

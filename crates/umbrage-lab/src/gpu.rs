@@ -60,6 +60,9 @@ pub enum GpuError {
     /// Reading results back failed.
     #[error("the device was lost while a frame was read back: {0}")]
     Readback(String),
+    /// The method makes no mask that could be applied so.
+    #[error(transparent)]
+    NoMask(#[from] crate::application::NoMask),
     /// The library refused.
     #[error(transparent)]
     Render(#[from] RenderError),
@@ -85,8 +88,10 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// Name and driver of the adapter.
+    /// Name of the adapter, and its driver in brackets.
     pub adapter: String,
+    /// Its driver.
+    pub driver: String,
     /// Whether z-pass is safe (`DEPTH_CLIP_CONTROL`).
     pub depth_clamp: bool,
     /// Nanoseconds per timestamp tick, where there are timestamps.
@@ -149,6 +154,9 @@ impl Gpu {
             depth_clamp: features.contains(wgpu::Features::DEPTH_CLIP_CONTROL),
             timestamp_ns,
             adapter: format!("{} ({})", info.name, info.driver_info).replace(" ()", ""),
+            driver: format!("{} {}", info.driver, info.driver_info)
+                .trim()
+                .to_owned(),
             device,
             queue,
         })

@@ -82,7 +82,7 @@ impl Lab {
         let mut run = self.run(stage, view, technique, draw, volume_color)?;
         run.shadows
             .prepare(&gpu.device, &gpu.queue, &self.frame(view))?;
-        let (technique, given) = run.technique(gpu, stage, lights, view, &self.plan);
+        let (technique, given) = run.technique(gpu, stage, lights, self.frame(view));
         technique.prepare(&given)?;
         let sums = texture(gpu, "counts", view.size, HDR, wgpu::TextureUsages::COPY_SRC);
         let mut encoder = gpu
@@ -91,7 +91,7 @@ impl Lab {
                 label: Some("counts"),
             });
         run.record_surface(gpu, &mut encoder, None);
-        let (technique, given) = run.technique(gpu, stage, lights, view, &self.plan);
+        let (technique, given) = run.technique(gpu, stage, lights, self.frame(view));
         technique.record(&given, &mut encoder, 0..lights.len(), &sums)?;
         gpu.queue.submit([encoder.finish()]);
         let first = |t: &[u8]| f16::from_le_bytes([t[0], t[1]]).to_f32();

@@ -13,6 +13,7 @@ use umbrage::{
 };
 use umbrage_truth::{Mask, NearClip};
 
+use crate::application::Application;
 use crate::gbuffer::{GBufferPass, Targets, texture};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::LightDraw;
@@ -20,7 +21,7 @@ use crate::picture::Lit;
 use crate::readback::read_texture;
 use crate::run::{Run, read_calls};
 use crate::stage::{Stage, StageLight};
-use crate::technique::{TechniqueReport, technique};
+use crate::technique::{Overflow, TechniqueReport, technique};
 use crate::timer::{StageTimes, Timer, medians, ms_since};
 
 pub use crate::method::Method;
@@ -31,6 +32,8 @@ pub struct Lab {
     gpu: Gpu,
     /// Which steps skip work.
     pub culls: Culls,
+    /// What masks leave of a light in its shadow.
+    pub application: Application,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -39,8 +42,10 @@ pub struct Lab {
     pub calls: Vec<LightCalls>,
     /// Bytes written for the last frame.
     pub uploaded: Uploaded,
-    /// Times of the last frame.
+    /// Times of the last frame, or medians of the last rendering.
     pub times: StageTimes,
+    /// Times of each frame of the last rendering; the first warmed up.
+    pub frames: Vec<StageTimes>,
     /// What the technique of the last frames holds.
     pub held: TechniqueReport,
     builder: VolumeBuilder,
@@ -54,11 +59,13 @@ impl Lab {
         Self {
             gpu,
             culls: Culls::EVERY,
+            application: Application::default(),
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
             uploaded: Uploaded::default(),
             times: StageTimes::default(),
+            frames: Vec::new(),
             held: TechniqueReport::default(),
             builder: VolumeBuilder::default(),
             lights: Vec::new(),
@@ -78,29 +85,30 @@ impl Lab {
         self.calls.clear();
         self.lights = lights.iter().map(|l| l.light).collect();
         self.method = method;
-        if !method.has_volumes() {
+        let Some(recipe) = method.recipe() else {
             self.volumes = Volumes::empty(self.lights.len());
-        } else {
-            let culls = self.culls;
-            let in_view =
-                |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
-            self.builder.culls = culls;
-            self.builder
-                .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
-        }
+            self.plan.unshadowed(&self.lights, view);
+            self.times.volumes = ms_since(start);
+            self.times.plan = 0.0;
+            return;
+        };
+        let culls = self.culls;
+        let in_view = |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
+        self.builder.culls = culls;
+        self.builder.construction = recipe.construction;
+        self.builder
+            .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         self.times.volumes = ms_since(start);
         let start = Instant::now();
         let mut options = PlanOptions::default();
-        options.culls = self.culls;
-        if method == Method::CounterZFail || !self.gpu.depth_clamp {
-            options.path = PathRule::ZFailAlways;
-        }
-        if !method.has_volumes() {
-            self.plan.unshadowed(&self.lights, view);
-        } else {
-            self.plan
-                .make(&stage.world, &self.lights, &self.volumes, view, &options);
-        }
+        options.culls = culls;
+        options.extrusion = recipe.extrusion;
+        options.path = match self.gpu.depth_clamp {
+            true => recipe.path,
+            false => PathRule::ZFailAlways,
+        };
+        self.plan
+            .make(&stage.world, &self.lights, &self.volumes, view, &options);
         self.times.plan = ms_since(start);
     }
 
@@ -120,12 +128,19 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
+                extrusion: method.recipe().unwrap_or_default().extrusion,
                 volume_color,
             },
         )?;
         shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
-        let technique = technique(method, &self.gpu, &shadows, draw)?;
+        // What a mask leaves in the shadow is for pictures; whether a pixel is lit does not hang
+        // on it.
+        let application = match draw {
+            LightDraw::Shade => self.application,
+            _ => Application::Black,
+        };
+        let technique = technique(method, application, &self.gpu, &shadows, draw)?;
         Ok(Run {
             targets,
             shadows,
@@ -146,20 +161,33 @@ impl Lab {
         method: Method,
         repeat: usize,
     ) -> Result<Lit, GpuError> {
+        self.render_while(stage, lights, view, method, |frames| frames.len() <= repeat)
+    }
+
+    /// As [`Lab::render`], with frames as long as `more`, asked after each, says that those so far
+    /// are not enough.
+    pub fn render_while(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        method: Method,
+        mut more: impl FnMut(&[StageTimes]) -> bool,
+    ) -> Result<Lit, GpuError> {
         let draw = LightDraw::Shade;
         let mut run = self.run(stage, view, method, draw, VolumeColor::None)?;
         let hdr_usage = wgpu::TextureUsages::COPY_SRC;
         let hdr = texture(&self.gpu, "light", view.size, draw.format(), hdr_usage);
         let timer = Timer::new(&self.gpu);
-        let mut all: Vec<StageTimes> = Vec::new();
-        for _ in 0..=repeat {
+        self.frames.clear();
+        loop {
             let start = Instant::now();
             self.prepare(stage, lights, view, method);
             let upload = Instant::now();
             self.uploaded =
                 run.shadows
                     .prepare(&self.gpu.device, &self.gpu.queue, &self.frame(view))?;
-            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
             technique.prepare(&given)?;
             self.times.upload = ms_since(upload);
             let record = Instant::now();
@@ -173,7 +201,7 @@ impl Lab {
             if let Some(timer) = &timer {
                 timer.mark(&mut encoder, 4);
             }
-            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
             technique.record(&given, &mut encoder, 0..lights.len(), &hdr)?;
             if let Some(timer) = &timer {
                 timer.mark(&mut encoder, 5);
@@ -192,12 +220,15 @@ impl Lab {
                 self.times.gpu_receivers = receivers;
                 self.times.gpu_lights = lights;
             }
-            all.push(self.times);
+            self.frames.push(self.times);
+            if !more(&self.frames) {
+                break;
+            }
         }
-        let first = all.first().copied().unwrap_or_default();
-        self.times = medians(&all[1.min(repeat)..]);
-        self.times.volumes_first = first.volumes;
-        self.times.frame_first = first.frame;
+        let timed = usize::from(self.frames.len() > 1);
+        self.times = medians(&self.frames[timed..]);
+        self.times.volumes_first = self.frames[0].volumes;
+        self.times.frame_first = self.frames[0].frame;
         self.calls = read_calls(&self.gpu, &run.shadows)?;
         self.held = run.technique.report();
         let light = read_texture(&self.gpu, &hdr)?;
@@ -238,6 +269,23 @@ impl Lab {
         self.run(stage, view, self.method, LightDraw::Mark, VolumeColor::None)
     }
 
+    /// The pixel-lights, among those that the lights reach, whose layers the method's mask cannot
+    /// represent, in what `volumes` and `plan` hold: a bit for each light, as in a mask. `None` if
+    /// the method has no such limit, or its mask another resolution.
+    pub fn unrepresentable(
+        &mut self,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+    ) -> Result<Option<Mask>, GpuError> {
+        let Some(layers) = self.method.layers() else {
+            return Ok(None);
+        };
+        let mut run = self.masking(stage, view)?;
+        run.technique = Box::new(Overflow::new(&self.gpu, &run.shadows, layers));
+        self.mask_in(&mut run, stage, lights, view).map(Some)
+    }
+
     /// As [`Lab::mask`], with buffers that keep what they hold from mask to mask.
     pub fn mask_in(
         &mut self,
@@ -246,17 +294,16 @@ impl Lab {
         lights: &[StageLight],
         view: &View,
     ) -> Result<Mask, GpuError> {
+        if run.method != self.method {
+            *run = self.masking(stage, view)?;
+        }
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
-        if run.method != self.method {
-            let method = self.method;
-            run.technique = technique(method, &self.gpu, &run.shadows, LightDraw::Mark)?;
-            run.method = method;
-        }
+        run.surface.update(&self.gpu, stage);
         self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
-        let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+        let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
         technique.prepare(&given)?;
         let usage = wgpu::TextureUsages::COPY_SRC;
         let layer = texture(
@@ -277,7 +324,7 @@ impl Lab {
             if first == 0 {
                 run.record_surface(&self.gpu, &mut encoder, None);
             }
-            let (technique, given) = run.technique(&self.gpu, stage, lights, view, &self.plan);
+            let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
             let batch = first..lights.len().min(first + 32);
             technique.record(&given, &mut encoder, batch, &layer)?;
             self.gpu.queue.submit([encoder.finish()]);

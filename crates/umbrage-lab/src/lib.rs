@@ -2,6 +2,8 @@
 //! benchmarks. It owns the device; the library only borrows it.
 #![forbid(unsafe_code)]
 
+pub mod actors;
+pub mod application;
 pub mod auto_camera;
 pub mod gbuffer;
 pub mod gpu;

@@ -18,6 +18,10 @@ pub const HDR: TextureFormat = TextureFormat::Rgba16Float;
 /// Where mask bits add up: 32 lights, a bit each.
 pub const MASK: TextureFormat = TextureFormat::Rgba8Unorm;
 
+/// Where mask bits add up beside an alpha channel in use: 32 lights in red, green and blue, eleven
+/// each, which is what a half float's integers hold.
+pub(crate) const WIDE_MASK: TextureFormat = HDR;
+
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct LightUniform {
@@ -59,6 +63,8 @@ impl From<&StageLight> for LightUniform {
 pub enum LightDraw {
     /// Reflected light, added up.
     Shade,
+    /// What reaches its shadow too, added up.
+    Ambient,
     /// The light's bit of the mask.
     Mark,
     /// One for each light that reaches the pixel, shadowed or not.
@@ -81,6 +87,7 @@ impl LightDraw {
     fn entry_point(self) -> &'static str {
         match self {
             LightDraw::Shade => "shade",
+            LightDraw::Ambient => "ambient",
             LightDraw::Mark => "mark",
             LightDraw::Reach => "reach",
             LightDraw::One | LightDraw::Nothing => "one",
@@ -93,6 +100,12 @@ impl LightDraw {
 pub(crate) enum LitBy<'a> {
     /// The stencil that the light's volume left.
     Stencil,
+    /// A stencil test of the technique's own.
+    StencilTest(wgpu::StencilFaceState),
+    /// The alpha that stands in the target: light is multiplied by it, and leaves it alone. Bits
+    /// of a mask, of which alpha is then no part, are drawn as [`LightDraw::Mark`] says for
+    /// [`WIDE_MASK`].
+    Alpha,
     /// Nothing: all are.
     Everything,
     /// A shader: `fn visibility(light: u32, pixel: vec2f) -> f32`, 0 in shadow, 1 lit, with its
@@ -124,9 +137,20 @@ impl LightPass {
             dst_factor: wgpu::BlendFactor::One,
             operation: wgpu::BlendOperation::Add,
         };
+        let add = match lit_by {
+            LitBy::Alpha => wgpu::BlendComponent {
+                src_factor: wgpu::BlendFactor::DstAlpha,
+                ..add
+            },
+            _ => add,
+        };
         let add = wgpu::BlendState {
             color: add,
             alpha: add,
+        };
+        let (format, entry_point) = match (lit_by, draw) {
+            (LitBy::Alpha, LightDraw::Mark) => (WIDE_MASK, "mark_wide"),
+            _ => (draw.format(), draw.entry_point()),
         };
         let layout = bind_group_layout(gpu);
         let (visibility, visibility_layout) = match lit_by {
@@ -144,6 +168,14 @@ impl LightPass {
             });
         let depth_stencil = match lit_by {
             LitBy::Stencil => shadows.light_depth_stencil(),
+            LitBy::StencilTest(face) => wgpu::DepthStencilState {
+                stencil: wgpu::StencilState {
+                    front: face,
+                    back: face,
+                    ..shadows.light_depth_stencil().stencil
+                },
+                ..shadows.light_depth_stencil()
+            },
             _ => wgpu::DepthStencilState {
                 stencil: wgpu::StencilState::default(),
                 ..shadows.light_depth_stencil()
@@ -173,13 +205,14 @@ impl LightPass {
                     multisample: wgpu::MultisampleState::default(),
                     fragment: Some(wgpu::FragmentState {
                         module: &module,
-                        entry_point: Some(draw.entry_point()),
+                        entry_point: Some(entry_point),
                         compilation_options: wgpu::PipelineCompilationOptions::default(),
                         targets: &[Some(wgpu::ColorTargetState {
-                            format: draw.format(),
+                            format,
                             blend: Some(add),
-                            write_mask: match draw {
-                                LightDraw::Nothing => wgpu::ColorWrites::empty(),
+                            write_mask: match (draw, lit_by) {
+                                (LightDraw::Nothing, _) => wgpu::ColorWrites::empty(),
+                                (_, LitBy::Alpha) => wgpu::ColorWrites::COLOR,
                                 _ => wgpu::ColorWrites::ALL,
                             },
                         })],

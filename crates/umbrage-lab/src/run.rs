@@ -1,8 +1,7 @@
 //! What a frame is drawn with, kept from frame to frame: targets, passes, the shadow renderer, the
 //! technique.
 
-use umbrage::frame::FramePlan;
-use umbrage::{LightCalls, ShadowRenderer, View};
+use umbrage::{Frame, LightCalls, ShadowRenderer};
 
 use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
 use crate::gpu::{Gpu, GpuError};
@@ -53,15 +52,15 @@ impl Run {
         gpu: &'a Gpu,
         stage: &'a Stage,
         lights: &'a [StageLight],
-        view: &'a View,
-        plan: &'a FramePlan,
+        frame: Frame<'a>,
     ) -> (&'a mut dyn Technique, Given<'a>) {
         let given = Given {
             gpu,
             stage,
             lights,
-            view,
-            plan,
+            view: frame.view,
+            plan: frame.plan,
+            frame,
             targets: &self.targets,
             surface: &self.surface,
             shadows: &self.shadows,

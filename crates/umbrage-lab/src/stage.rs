@@ -1,14 +1,17 @@
 //! A loaded scene made ready: triangles with casting rules, a world, lights, and what shading
 //! needs.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3};
 use thiserror::Error;
-use umbrage_core::world::{SavedWorldError, World, WorldError};
+use umbrage_core::world::{ObjectError, SavedWorldError, World, WorldError};
 use umbrage_core::{Casting, Light, LightShape, Mesh};
+use umbrage_scene::rig::Posed;
 use umbrage_scene::{AlphaMode, LightKind, Scene, SceneError, Soup};
 
+use crate::actors::{self, Actor};
 use crate::saved_world::{WorldFileError, open_or_build};
 
 /// Which casting rule the scene's casters follow.
@@ -40,6 +43,16 @@ pub enum StageError {
         /// What is wrong.
         error: WorldError,
     },
+    /// An instance that moves.
+    #[error("{scene}: instance {instance}: {error}")]
+    Actor {
+        /// Name of the scene.
+        scene: String,
+        /// Name of the instance.
+        instance: String,
+        /// What is wrong.
+        error: ObjectError,
+    },
     /// The file of its world.
     #[error("{}: {error}", file.display())]
     SavedWorld {
@@ -51,6 +64,14 @@ pub enum StageError {
 }
 
 impl StageError {
+    pub(crate) fn actor(scene: &Scene, instance: u32, error: ObjectError) -> Self {
+        StageError::Actor {
+            scene: scene.name.clone(),
+            instance: scene.instances[instance as usize].name.clone(),
+            error,
+        }
+    }
+
     /// Names what the error is about.
     pub fn new(scene: &Scene, world_file: Option<&Path>, error: WorldFileError) -> Self {
         match error {
@@ -93,51 +114,84 @@ impl StageLight {
 /// A scene ready to render and to judge.
 #[derive(Debug)]
 pub struct Stage {
-    /// As loaded.
+    /// As loaded, its lights and cameras where they are at `time_s`.
     pub scene: Scene,
-    /// World-space triangles with shading attributes, in file order, without blended ones: these
-    /// neither cast nor receive, and the lab does not draw them.
+    /// World-space triangles with shading attributes, those that never move first, else in file
+    /// order, without blended ones: these neither cast nor receive, and the lab does not draw them.
     pub soup: Soup,
     /// The same triangles as the library and the oracle take them.
     pub mesh: Mesh,
-    /// Built from `mesh`.
+    /// Built from those of `mesh` that never move, with an object for each of `actors`.
     pub world: World,
+    /// What moves.
+    pub actors: Vec<Actor>,
+    /// Where the nodes and joints of the scene are at `time_s`.
+    pub posed: Posed,
+    /// Seconds: see [`Stage::set_time`].
+    pub time_s: f64,
 }
 
 /// Illuminance (lux) below which a light without a range is taken to end.
 const DARK: f32 = 0.01;
 
 impl Stage {
-    /// Flattens the scene and builds its world, with positions relative to `origin` or to the
-    /// soup's own.
+    /// Flattens the scene at time zero and builds its world, with positions relative to `origin` or
+    /// to the soup's own.
     pub fn new(scene: Scene, casters: Casters, origin: Option<DVec3>) -> Result<Self, StageError> {
-        Self::with_world_file(scene, casters, origin, None)
+        Self::with_world_file(scene, casters, origin, 0.0, None)
     }
 
-    /// The same with the world mapped from `world_file` where that exists, else saved there.
+    /// The same with the world of what never moves mapped from `world_file` where that exists, else
+    /// saved there, and with positions of what never moves within `weld_m` of each other welded
+    /// (see [`Mesh::weld_within`]; 0 moves none).
     pub fn with_world_file(
-        scene: Scene,
+        mut scene: Scene,
         casters: Casters,
         origin: Option<DVec3>,
+        weld_m: f32,
         world_file: Option<&Path>,
     ) -> Result<Self, StageError> {
-        let mut soup = scene.soup_at(origin)?;
+        let posed = scene.posed(0.0);
+        scene.follow(&posed);
+        let mut soup = scene.soup_posed(&posed, origin)?;
         drop_blended(&scene, &mut soup);
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             positions: soup.positions.clone(),
             triangles: soup.triangles.clone(),
             casting: casting(&scene, &soup, casters),
         };
-        let world = match open_or_build(&mesh, world_file) {
+        let [vertices, fixed] = actors::fixed_part(&scene, &soup);
+        let mut never_moves = first(&mesh, vertices, fixed);
+        if weld_m != 0.0 {
+            let mut welded = never_moves.into_owned();
+            if let Err(error) = welded.weld_within(weld_m) {
+                return Err(StageError::new(&scene, None, error.into()));
+            }
+            soup.positions[..vertices].copy_from_slice(&welded.positions);
+            mesh.positions[..vertices].copy_from_slice(&welded.positions);
+            never_moves = Cow::Owned(welded);
+        }
+        let mut world = match open_or_build(&never_moves, world_file) {
             Ok(found) => found.world,
             Err(error) => return Err(StageError::new(&scene, world_file, error)),
         };
         Ok(Self {
+            actors: actors::insert(&scene, &soup, &mesh, fixed, &mut world)?,
             scene,
             soup,
             mesh,
             world,
+            posed,
+            time_s: 0.0,
         })
+    }
+
+    /// The triangles that never move; all of them, where they stand, if every one may.
+    pub fn scenery(&self) -> Cow<'_, Mesh> {
+        match actors::fixed_part(&self.scene, &self.soup) {
+            [_, 0] => Cow::Borrowed(&self.mesh),
+            [vertices, triangles] => first(&self.mesh, vertices, triangles),
+        }
     }
 
     /// A world point relative to the world origin, rounded once.
@@ -199,6 +253,18 @@ pub fn casting(scene: &Scene, soup: &Soup, casters: Casters) -> Vec<Casting> {
         Casters::Both => Casting::Both,
     };
     soup.material.iter().map(rule).collect()
+}
+
+/// The first vertices and triangles of a mesh.
+fn first(mesh: &Mesh, vertices: usize, triangles: usize) -> Cow<'_, Mesh> {
+    if triangles == mesh.triangles.len() && vertices == mesh.positions.len() {
+        return Cow::Borrowed(mesh);
+    }
+    Cow::Owned(Mesh {
+        positions: mesh.positions[..vertices].to_vec(),
+        triangles: mesh.triangles[..triangles].to_vec(),
+        casting: mesh.casting[..triangles].to_vec(),
+    })
 }
 
 fn drop_blended(scene: &Scene, soup: &mut Soup) {

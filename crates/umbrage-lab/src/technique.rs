@@ -5,6 +5,8 @@
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
 mod binding;
+mod extrude;
+mod mask;
 mod ray_trace;
 mod shadow_map;
 mod stencil;
@@ -14,17 +16,21 @@ use std::fmt::Debug;
 use std::ops::Range;
 
 use umbrage::frame::FramePlan;
-use umbrage::{ShadowRenderer, View};
+use umbrage::{Frame, ShadowRenderer, View};
 
+use crate::application::Application;
 use crate::gbuffer::{GBufferPass, Targets};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::LightDraw;
-use crate::method::Method;
+use crate::method::{Counting, MaskBuffer, Method};
 use crate::stage::{Stage, StageLight};
 
+use extrude::Extrude;
+pub(crate) use mask::Overflow;
+use mask::{InFrame, InLayers};
 use ray_trace::RayTrace;
 use shadow_map::ShadowMap;
-pub(crate) use stencil::Stencil;
+use stencil::Stencil;
 use unshadowed::Unshadowed;
 
 /// What a technique is given to draw a frame with.
@@ -36,6 +42,8 @@ pub(crate) struct Given<'a> {
     pub(crate) view: &'a View,
     /// Where each light is drawn, and its volume if the method has volumes.
     pub(crate) plan: &'a FramePlan,
+    /// What the plan was made of, for who makes it ready once more at another size.
+    pub(crate) frame: Frame<'a>,
     /// The surface, drawn earlier in the same encoder.
     pub(crate) targets: &'a Targets,
     /// Draws the surface, for who needs it at another size.
@@ -77,15 +85,34 @@ pub(crate) trait Technique: Debug {
     }
 }
 
-/// The technique behind a method, for lights drawn as `draw`.
+/// The technique behind a method, for lights drawn as `draw`, of which masks leave what
+/// `application` says in their shadows.
 pub(crate) fn technique(
     method: Method,
+    application: Application,
     gpu: &Gpu,
     shadows: &ShadowRenderer,
     draw: LightDraw,
 ) -> Result<Box<dyn Technique>, GpuError> {
+    method.check(application)?;
     Ok(match method {
-        Method::Counter | Method::CounterZFail => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::Counter
+        | Method::CounterZFail
+        | Method::CounterFinite(_)
+        | Method::Brute
+        | Method::Crow => Box::new(Stencil::new(gpu, shadows, draw)),
+        Method::Mask(buffer @ (MaskBuffer::Alpha | MaskBuffer::Max)) => {
+            Box::new(InFrame::new(gpu, shadows, draw, buffer, application))
+        }
+        Method::Mask(buffer) => {
+            let of = Counting::Mask(buffer);
+            Box::new(InLayers::new(gpu, shadows, draw, of, application, 1)?)
+        }
+        Method::LowResolution { of, divisor } => {
+            let pixels = divisor.pixels();
+            Box::new(InLayers::new(gpu, shadows, draw, of, application, pixels)?)
+        }
+        Method::Extrude(normals) => Box::new(Extrude::new(gpu, shadows, draw, normals)),
         Method::ShadowMap { texels } => Box::new(ShadowMap::new(gpu, shadows, draw, texels)?),
         Method::RayTrace => Box::new(RayTrace::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),

@@ -30,6 +30,13 @@ pub struct StageTimes {
     pub frame_first: f64,
 }
 
+impl StageTimes {
+    /// The GPU's part.
+    pub fn gpu(&self) -> f64 {
+        self.gpu_surface + self.gpu_receivers + self.gpu_lights
+    }
+}
+
 /// Begin and end of the three GPU stages.
 #[derive(Debug)]
 pub(crate) struct Timer {

@@ -142,6 +142,18 @@ pub enum SceneError {
         /// Its name.
         name: String,
     },
+    /// A skin cannot be read.
+    #[error("{}: skin {skin} ({name}): {what}; export the skin again", path.display())]
+    Skin {
+        /// The .glb or .gltf file.
+        path: PathBuf,
+        /// Index of the skin.
+        skin: usize,
+        /// Its name.
+        name: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A statement of an OBJ file cannot be understood.
     #[error("{}:{line}: {what}; repair the line or export the file again", path.display())]
     Obj {

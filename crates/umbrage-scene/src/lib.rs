@@ -16,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 mod budget;
+mod check;
 mod error;
 mod generate;
 mod gltf;
@@ -23,6 +24,7 @@ mod image;
 mod obj;
 mod progress;
 mod report;
+pub mod rig;
 mod scene;
 mod soup;
 mod source;

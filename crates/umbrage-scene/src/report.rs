@@ -32,8 +32,18 @@ pub struct LoadReport {
     pub missing_images: u64,
     /// Images that are there but could not be decoded.
     pub unreadable_images: u64,
-    /// Nodes with a skin, drawn in their rest position without it.
+    /// Nodes with a skin that cannot be followed, drawn where they stand: a mesh without joints, or
+    /// joints that are not in the scene.
     pub ignored_skins: u64,
+    /// Vertices whose weights did not sum to 1 or were negative.
+    pub repaired_weights: u64,
+    /// Vertices that follow more than four joints: the four heaviest were kept.
+    pub dropped_influences: u64,
+    /// Animation channels left out: morph weights, nodes that are not in the scene or have a matrix,
+    /// values that cannot be read.
+    pub skipped_channels: u64,
+    /// Animations and skins left out because their JSON lacks what glTF demands.
+    pub skipped_rigs: u64,
     /// Primitives with morph targets, drawn without them.
     pub ignored_morphs: u64,
     /// Nodes with `EXT_mesh_gpu_instancing`, drawn once.
@@ -81,6 +91,10 @@ impl LoadReport {
             ("missing_images", self.missing_images),
             ("unreadable_images", self.unreadable_images),
             ("ignored_skins", self.ignored_skins),
+            ("repaired_weights", self.repaired_weights),
+            ("dropped_influences", self.dropped_influences),
+            ("skipped_channels", self.skipped_channels),
+            ("skipped_rigs", self.skipped_rigs),
             ("ignored_morphs", self.ignored_morphs),
             ("ignored_instancing", self.ignored_instancing),
             ("hidden_nodes", self.hidden_nodes),

@@ -8,6 +8,7 @@
 use glam::{DAffine3, DVec3, Vec2, Vec3, Vec4};
 
 use crate::report::LoadReport;
+use crate::rig::Rig;
 
 /// Everything a file or a generator says about a world.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +27,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Perspective cameras in world space.
     pub cameras: Vec<Camera>,
+    /// What moves, if anything can.
+    pub rig: Option<Rig>,
     /// What was skipped or repaired on the way in.
     pub report: LoadReport,
 }
@@ -45,6 +48,11 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// One index into [`Scene::materials`] a triangle.
     pub materials: Vec<u32>,
+    /// Empty or one per vertex: four joints of the instance's skin. Of an instance without a skin
+    /// they say nothing.
+    pub joints: Vec<[u16; 4]>,
+    /// As long as `joints`: how much of each joint, at least 0, together 1.
+    pub weights: Vec<[f32; 4]>,
 }
 
 /// One placement of a mesh.
@@ -54,8 +62,12 @@ pub struct Instance {
     pub name: String,
     /// Index into [`Scene::meshes`].
     pub mesh: u32,
-    /// Mesh space to world space; may mirror, may be singular, is finite.
+    /// Mesh space to world space where nothing plays; may mirror, may be singular, is finite.
     pub transform: DAffine3,
+    /// Index into [`Rig::nodes`], if the scene has a rig.
+    pub node: Option<u32>,
+    /// Index into [`Rig::skins`]: joints, not `transform`, place its vertices.
+    pub skin: Option<u32>,
 }
 
 /// How a surface's alpha is meant.
@@ -155,6 +167,8 @@ pub struct Light {
     pub range: Option<f32>,
     /// What kind of light.
     pub kind: LightKind,
+    /// Index into [`Rig::nodes`] of the node it hangs on, if the scene has a rig.
+    pub node: Option<u32>,
 }
 
 impl Default for Light {
@@ -168,6 +182,7 @@ impl Default for Light {
             intensity: 1.0,
             range: None,
             kind: LightKind::Point,
+            node: None,
         }
     }
 }
@@ -187,6 +202,8 @@ pub struct Camera {
     pub fovy_rad: f64,
     /// Distance of the near plane in metres, if the file gives one.
     pub near: Option<f64>,
+    /// Index into [`Rig::nodes`] of the node it hangs on, if the scene has a rig.
+    pub node: Option<u32>,
 }
 
 impl Default for Camera {
@@ -199,6 +216,7 @@ impl Default for Camera {
             up: DVec3::Y,
             fovy_rad: std::f64::consts::FRAC_PI_3,
             near: None,
+            node: None,
         }
     }
 }
@@ -216,6 +234,7 @@ impl Camera {
             up: right.cross(forward),
             fovy_rad,
             near: None,
+            node: None,
         }
     }
 }

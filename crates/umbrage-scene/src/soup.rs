@@ -3,10 +3,14 @@
 //! Takes a [`Scene`]; gives a [`Soup`]. Transforms are applied in f64 and rounded to f32 once,
 //! after the origin is subtracted, so an identity transform keeps the bits of the file and a world
 //! far from zero keeps its detail. A transform that mirrors reverses the winding, so that the front
-//! of a triangle stays its front.
+//! of a triangle stays its front; what mirrors does so by how it stands at rest, so that triangles
+//! are the same at all times.
 
-use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3};
+use std::ops::Range;
 
+use glam::{DMat3, DVec3, Vec2, Vec3};
+
+use crate::rig::{Placing, Posed};
 use crate::{Instance, Mesh, Scene, SceneError};
 
 /// Most triangles that [`Scene::soup`] gives.
@@ -16,7 +20,8 @@ pub const MAX_TRIANGLES: u64 = 200_000_000;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Soup {
     /// World position that the positions are relative to: zero if the world contains it or lies
-    /// near it, else the centre of the world in whole metres.
+    /// near it, else the centre of the world in whole metres. What never moves decides, if
+    /// anything does not.
     pub origin: DVec3,
     /// World position minus origin; vertices are shared inside an instance, not between them.
     pub positions: Vec<Vec3>,
@@ -30,10 +35,13 @@ pub struct Soup {
     pub normals: Vec<[Vec3; 3]>,
     /// One texture coordinate a corner, zero where the mesh has none; empty if no mesh has any.
     pub uvs: Vec<[Vec2; 3]>,
+    /// The vertices of each of [`Scene::instances`], in the order of its mesh.
+    pub vertices: Vec<Range<u32>>,
 }
 
 impl Scene {
-    /// Flattens every instance into one soup, in the order of the instances.
+    /// Flattens every instance into one soup as the file puts it, with nothing playing: first the
+    /// instances that never move, then those that may ([`Scene::moving`]).
     ///
     /// # Errors
     /// More than [`MAX_TRIANGLES`] triangles or 2^32 vertices, no memory for them, an index out of
@@ -47,14 +55,26 @@ impl Scene {
     /// # Errors
     /// As [`Scene::soup`].
     pub fn soup_at(&self, at: Option<DVec3>) -> Result<Soup, SceneError> {
+        self.soup_posed(&self.rest(), at)
+    }
+
+    /// [`Scene::soup_at`] with what moves where `posed` says.
+    ///
+    /// # Errors
+    /// As [`Scene::soup`].
+    pub fn soup_posed(&self, posed: &Posed, at: Option<DVec3>) -> Result<Soup, SceneError> {
         let used = self.check_used()?;
+        let (rest, moving) = (self.rest(), self.moving());
+        let mut order: Vec<usize> = (0..used.len()).collect();
+        order.sort_by_key(|&i| moving[i]);
         let triangles = self.flattened_triangles() as usize;
         let vertices: usize = used.iter().map(|(_, m)| m.positions.len()).sum();
         let shaded = used.iter().any(|(_, m)| !m.normals.is_empty());
         let textured = used.iter().any(|(_, m)| !m.uvs.is_empty());
 
         let mut soup = Soup {
-            origin: at.unwrap_or_else(|| origin(&used)),
+            origin: at.unwrap_or_else(|| origin(&used, &moving, posed)),
+            vertices: vec![0..0; used.len()],
             ..Soup::default()
         };
         self.reserve(&mut soup.positions, vertices)?;
@@ -64,100 +84,26 @@ impl Scene {
         self.reserve(&mut soup.normals, if shaded { triangles } else { 0 })?;
         self.reserve(&mut soup.uvs, if textured { triangles } else { 0 })?;
 
-        for (index, &(instance, mesh)) in used.iter().enumerate() {
+        for index in order {
+            let (instance, mesh) = used[index];
             let base = soup.positions.len();
-            place(
-                &instance.transform,
-                soup.origin,
-                &mesh.positions,
-                &mut soup.positions,
-            );
+            let placing = posed.placing(instance, mesh);
+            placing.place(mesh, soup.origin, &mut soup.positions);
+            soup.vertices[index] = base as u32..soup.positions.len() as u32;
             if let Some(v) = soup.positions[base..].iter().position(|p| !p.is_finite()) {
                 let what = format!("vertex {v} is not finite in world space");
                 return Err(self.invalid(self.instance_item(index), what));
             }
-            append(
-                &mut soup,
-                (index as u32, instance),
+            let part = Part {
+                index: index as u32,
                 mesh,
-                base as u32,
-                [shaded, textured],
-            );
+                placing,
+                mirrored: rest.placing(instance, mesh).mirrors(),
+                base: base as u32,
+            };
+            append(&mut soup, &part, [shaded, textured]);
         }
         Ok(soup)
-    }
-
-    /// The mesh of each instance, once every index is known to be in range.
-    fn check_used(&self) -> Result<Vec<(&Instance, &Mesh)>, SceneError> {
-        let triangles = self.flattened_triangles();
-        if triangles > MAX_TRIANGLES {
-            let (scene, limit) = (self.name.clone(), MAX_TRIANGLES);
-            return Err(SceneError::TooManyTriangles {
-                scene,
-                triangles,
-                limit,
-            });
-        }
-        self.check_meshes()?;
-        let mut vertices = 0u64;
-        let mut used = Vec::with_capacity(self.instances.len());
-        for (i, instance) in self.instances.iter().enumerate() {
-            let Some(mesh) = self.meshes.get(instance.mesh as usize) else {
-                let what = format!("mesh {} of {}", instance.mesh, self.meshes.len());
-                return Err(self.invalid(self.instance_item(i), what));
-            };
-            vertices += mesh.positions.len() as u64;
-            used.push((instance, mesh));
-        }
-        if vertices > u64::from(u32::MAX) {
-            let what = format!("{vertices} vertices do not fit 32-bit indices");
-            return Err(self.invalid("flattened scene".to_owned(), what));
-        }
-        Ok(used)
-    }
-
-    /// That every mesh keeps the invariant of [`Scene`].
-    pub(crate) fn check_meshes(&self) -> Result<(), SceneError> {
-        for (m, mesh) in self.meshes.iter().enumerate() {
-            self.check_mesh(mesh)
-                .map_err(|what| self.invalid(format!("mesh {m} ({})", mesh.name), what))?;
-        }
-        Ok(())
-    }
-
-    /// What is wrong with a mesh, if anything.
-    fn check_mesh(&self, mesh: &Mesh) -> Result<(), String> {
-        let vertices = mesh.positions.len();
-        for (what, len) in [("normals", mesh.normals.len()), ("uvs", mesh.uvs.len())] {
-            if len != 0 && len != vertices {
-                return Err(format!("{len} {what} for {vertices} vertices"));
-            }
-        }
-        if mesh.materials.len() != mesh.triangles.len() {
-            let (m, t) = (mesh.materials.len(), mesh.triangles.len());
-            return Err(format!("{m} materials for {t} triangles"));
-        }
-        let beyond = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= vertices);
-        if let Some(t) = mesh.triangles.iter().position(beyond) {
-            return Err(format!("triangle {t} names a vertex beyond {vertices}"));
-        }
-        let count = self.materials.len();
-        if let Some(t) = mesh.materials.iter().position(|&m| m as usize >= count) {
-            return Err(format!("triangle {t} names a material beyond {count}"));
-        }
-        Ok(())
-    }
-
-    fn instance_item(&self, index: usize) -> String {
-        format!("instance {index} ({})", self.instances[index].name)
-    }
-
-    pub(crate) fn invalid(&self, item: String, what: String) -> SceneError {
-        SceneError::Invalid {
-            scene: self.name.clone(),
-            item,
-            what,
-        }
     }
 
     fn reserve<T>(&self, into: &mut Vec<T>, count: usize) -> Result<(), SceneError> {
@@ -169,12 +115,57 @@ impl Scene {
     }
 }
 
-/// Zero if the world's box lies within its own diagonal of zero, else its centre in whole metres.
-fn origin(used: &[(&Instance, &Mesh)]) -> DVec3 {
+impl Soup {
+    /// Moves instances of `scene` to where `posed` puts them: their positions and normals. Each comes
+    /// with its share of `triangles`.
+    pub fn repose(
+        &mut self,
+        scene: &Scene,
+        posed: &Posed,
+        instances: impl Iterator<Item = (u32, Range<usize>)>,
+    ) {
+        let rest = scene.rest();
+        let mut placed = Vec::new();
+        for (index, range) in instances {
+            let Some(instance) = scene.instances.get(index as usize) else {
+                continue;
+            };
+            let (Some(mesh), Some(vertices)) = (
+                scene.meshes.get(instance.mesh as usize),
+                self.vertices.get(index as usize),
+            ) else {
+                continue;
+            };
+            let placing = posed.placing(instance, mesh);
+            placed.clear();
+            placing.place(mesh, self.origin, &mut placed);
+            let old = &mut self.positions[vertices.start as usize..vertices.end as usize];
+            old.copy_from_slice(&placed);
+            if !self.normals.is_empty() {
+                let part = Part {
+                    index,
+                    mesh,
+                    placing,
+                    mirrored: rest.placing(instance, mesh).mirrors(),
+                    base: vertices.start,
+                };
+                let triangles = self.triangles[range.clone()].iter();
+                let triangles = triangles.zip(&mut self.normals[range]);
+                shade(&part, &self.positions, triangles);
+            }
+        }
+    }
+}
+
+/// Zero if the box of what never moves (of everything, if all moves) lies within its own diagonal
+/// of zero, else its centre in whole metres.
+fn origin(used: &[(&Instance, &Mesh)], moving: &[bool], posed: &Posed) -> DVec3 {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for (instance, mesh) in used {
-        for p in &mesh.positions {
-            let p = instance.transform.transform_point3(p.as_dvec3());
+    let all = moving.iter().all(|&moves| moves);
+    for (&(instance, mesh), _) in used.iter().zip(moving).filter(|(_, moves)| all || !**moves) {
+        let placing = posed.placing(instance, mesh);
+        for (v, p) in mesh.positions.iter().enumerate() {
+            let p = placing.of_vertex(mesh, v).transform_point3(p.as_dvec3());
             low = low.min(p);
             high = high.max(p);
         }
@@ -188,48 +179,66 @@ fn origin(used: &[(&Instance, &Mesh)]) -> DVec3 {
     }
 }
 
-/// Appends the positions of one instance, rounded once.
-fn place(transform: &DAffine3, origin: DVec3, from: &[Vec3], to: &mut Vec<Vec3>) {
-    if *transform == DAffine3::IDENTITY && origin == DVec3::ZERO {
-        to.extend_from_slice(from); // keeps the sign of zero too
-        return;
-    }
-    to.extend(
-        from.iter()
-            .map(|p| (transform.transform_point3(p.as_dvec3()) - origin).as_vec3()),
-    );
+/// One instance on its way into a soup that has its positions.
+struct Part<'a> {
+    index: u32,
+    mesh: &'a Mesh,
+    placing: Placing<'a>,
+    mirrored: bool,
+    /// Its first vertex.
+    base: u32,
 }
 
 /// Appends the triangles of one instance and what belongs to their corners.
-fn append(
-    soup: &mut Soup,
-    (index, instance): (u32, &Instance),
-    mesh: &Mesh,
-    base: u32,
-    [shaded, textured]: [bool; 2],
-) {
-    let linear = instance.transform.matrix3;
-    let mirrored = linear.determinant() < 0.0;
-    let cofactors = cofactors(linear) * if mirrored { -1.0 } else { 1.0 };
+fn append(soup: &mut Soup, part: &Part<'_>, [shaded, textured]: [bool; 2]) {
+    let mesh = part.mesh;
+    let first = soup.triangles.len();
     for (t, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-        let corners = if mirrored { [a, c, b] } else { [a, b, c] };
-        let placed = corners.map(|v| base + v);
-        soup.triangles.push(placed);
+        let corners = if part.mirrored { [a, c, b] } else { [a, b, c] };
+        soup.triangles.push(corners.map(|v| part.base + v));
         soup.material.push(mesh.materials[t]);
-        soup.instance.push(index);
-        if shaded {
-            let [p, q, r] = placed.map(|v| soup.positions[v as usize].as_dvec3());
-            let face = (q - p).cross(r - p).try_normalize().unwrap_or(DVec3::Y);
-            soup.normals.push(corners.map(|v| {
-                let own = mesh.normals.get(v as usize).copied().unwrap_or(Vec3::ZERO);
-                let own = (cofactors * own.as_dvec3()).try_normalize();
-                own.unwrap_or(face).as_vec3()
-            }));
-        }
+        soup.instance.push(part.index);
         if textured {
             let uv = |v: u32| mesh.uvs.get(v as usize).copied().unwrap_or(Vec2::ZERO);
             soup.uvs.push(corners.map(uv));
         }
+    }
+    if shaded {
+        soup.normals.resize(soup.triangles.len(), [Vec3::ZERO; 3]);
+        let Soup {
+            positions,
+            triangles,
+            normals,
+            ..
+        } = soup;
+        let triangles = triangles[first..].iter().zip(&mut normals[first..]);
+        shade(part, positions, triangles);
+    }
+}
+
+/// Writes the normals of triangles of one instance: the mesh's own where it has them, the face's
+/// where it has none.
+fn shade<'t>(
+    part: &Part<'_>,
+    positions: &[Vec3],
+    triangles: impl Iterator<Item = (&'t [u32; 3], &'t mut [Vec3; 3])>,
+) {
+    let turned = |linear: DMat3| cofactors(linear) * if part.mirrored { -1.0 } else { 1.0 };
+    let rigid = match part.placing {
+        Placing::Rigid(transform) => Some(turned(transform.matrix3)),
+        Placing::Skinned(_) => None,
+    };
+    let mesh = part.mesh;
+    for (corners, normals) in triangles {
+        let [p, q, r] = corners.map(|v| positions[v as usize].as_dvec3());
+        let face = (q - p).cross(r - p).try_normalize().unwrap_or(DVec3::Y);
+        *normals = corners.map(|v| {
+            let v = (v - part.base) as usize;
+            let own = mesh.normals.get(v).copied().unwrap_or(Vec3::ZERO);
+            let to_world = rigid.unwrap_or_else(|| turned(part.placing.of_vertex(mesh, v).matrix3));
+            let own = (to_world * own.as_dvec3()).try_normalize();
+            own.unwrap_or(face).as_vec3()
+        });
     }
 }
 

@@ -22,7 +22,8 @@ pub use whole::whole;
 ///
 /// The triangles of a mesh come back grouped by material, in order of first use. Meshes without
 /// triangles, and instances of them, are left out, since glTF has no empty mesh. A camera without
-/// a near plane comes back with one of 5 cm.
+/// a near plane comes back with one of 5 cm. What moves is written as the file it came from puts it,
+/// without its skins and animations.
 ///
 /// # Errors
 /// An index out of range or a value that is not finite, more than the 4 GiB of a GLB container, or

@@ -5,6 +5,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use umbrage_scene::SceneError;
+
 fn folder() -> Option<PathBuf> {
     let folder = PathBuf::from(std::env::var_os("UMBRAGE_SCENES")?);
     assert!(folder.is_dir(), "UMBRAGE_SCENES is no folder");
@@ -79,6 +81,16 @@ fn nasty_files_have_the_triangles_of_their_statistics() {
     check("STATS_nasty.tsv", &refused);
 }
 
+/// Loads a file and flattens it at rest and in motion.
+fn load_and_move(path: &Path) -> Result<(), SceneError> {
+    let scene = umbrage_scene::load(path, &())?;
+    scene.soup()?;
+    for time_s in [0.0, 0.3, 1e9] {
+        scene.soup_posed(&scene.posed(time_s), None)?;
+    }
+    Ok(())
+}
+
 #[test]
 fn every_file_gives_a_scene_or_an_error_that_names_it() {
     let Some(folder) = folder() else { return };
@@ -88,7 +100,7 @@ fn every_file_gives_a_scene_or_an_error_that_names_it() {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if let Err(error) = umbrage_scene::load(&path, &()).and_then(|s| s.soup()) {
+            } else if let Err(error) = load_and_move(&path) {
                 let name = path.file_stem().unwrap().to_string_lossy().into_owned();
                 assert!(error.to_string().contains(&name), "{error}");
             }

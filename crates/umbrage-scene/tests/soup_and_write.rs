@@ -14,6 +14,7 @@ fn instance(mesh: u32, transform: DAffine3) -> Instance {
         name: format!("instance_{mesh}"),
         mesh,
         transform,
+        ..Instance::default()
     }
 }
 
@@ -25,6 +26,7 @@ fn triangle() -> Mesh {
         uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
         triangles: vec![[0, 1, 2]],
         materials: vec![0],
+        ..Mesh::default()
     }
 }
 
@@ -151,6 +153,7 @@ fn full() -> Scene {
                 inner_rad: 0.2,
                 outer_rad: 0.5,
             },
+            ..Light::default()
         },
         Light {
             name: "sun".to_owned(),

@@ -7,19 +7,18 @@
 //! than the stated tolerance (see `ambiguity`), else it is *wrong*. A light that the method skipped
 //! counts as lighting nothing: every lit sample in it is an error.
 
-use rayon::prelude::*;
 use umbrage_core::{Light, View};
 
 use crate::mask::Mask;
-use crate::oracle::{Oracle, Verdict};
-use crate::rays::{EyeRays, NearClip};
-use crate::tile;
+use crate::oracle::Oracle;
+use crate::rays::NearClip;
 
 mod ambiguity;
+mod verdicts;
 mod worst;
 
-use ambiguity::Neighbourhood;
 pub use ambiguity::{TOLERANCE_DEPTH, TOLERANCE_PX};
+pub use verdicts::{ErrorMap, Verdicts};
 pub use worst::{WORST_COUNT, Worst, WrongKind};
 
 /// How to judge.
@@ -84,22 +83,11 @@ pub struct Judgement {
     pub per_light: Vec<LightErrors>,
 }
 
-/// What one tile adds.
-#[derive(Default)]
-struct TileErrors {
-    /// Lights with samples here.
-    lights: Vec<(usize, LightErrors)>,
-    wrong_lit: u64,
-    /// The first wrong sample of each light.
-    first_wrong: Vec<Worst>,
-}
-
-/// Judges a mask. `progress` is called with the pixels done and the pixels in all, from any
-/// thread and in any order.
+/// Judges a mask; [`Verdicts`] judge several of one view for the price of one. `progress` is called
+/// with the pixels done and the pixels in all, from any thread and in any order.
 ///
 /// # Panics
-/// If the mask's size or number of lights is not that of the view and the lights, or if
-/// `options.skipped` is neither empty nor one flag a light: a checker must not guess.
+/// As [`Verdicts::judge`].
 pub fn judge(
     oracle: &Oracle,
     view: &View,
@@ -108,117 +96,85 @@ pub fn judge(
     options: &JudgeOptions,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Judgement {
-    assert_eq!(mask.size, view.size, "mask and view differ in size");
-    assert_eq!(
-        mask.lights as usize,
-        lights.len(),
-        "mask and scene differ in lights"
-    );
-    assert_eq!(
-        mask.words.len(),
-        Mask::word_count(mask.size, mask.lights),
-        "mask lacks words"
-    );
-    let skipped = &options.skipped;
-    assert!(
-        skipped.is_empty() || skipped.len() == lights.len(),
-        "one skip flag a light"
-    );
-
-    let rays = EyeRays::new(view, options.near);
-    let method_lit = |x, y, light: usize| {
-        !skipped.get(light).copied().unwrap_or(false) && mask.get(x, y, light as u32)
-    };
-    let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
-    let done = std::sync::atomic::AtomicU64::new(0);
-    let tiles: Vec<TileErrors> = tile::tiles(view.size)
-        .into_par_iter()
-        .map(|tile| {
-            let errors = judge_tile(oracle, &rays, lights, &tile, &method_lit);
-            let count = tile.pixel_count();
-            let before = done.fetch_add(count, std::sync::atomic::Ordering::Relaxed);
-            progress(before + count, pixels);
-            errors
-        })
-        .collect();
-
-    let mut result = Judgement {
-        pixels,
-        lights: lights.len() as u32,
-        samples: 0,
-        wrong: 0,
-        wrong_lit: 0,
-        wrong_shadowed: 0,
-        ambiguous: 0,
-        tolerance_px: TOLERANCE_PX,
-        tolerance_depth: TOLERANCE_DEPTH,
-        worst: Vec::new(),
-        per_light: vec![LightErrors::default(); lights.len()],
-    };
-    let mut candidates = Vec::new();
-    for tile in tiles {
-        for (light, errors) in tile.lights {
-            let sum = &mut result.per_light[light];
-            sum.samples += errors.samples;
-            sum.wrong += errors.wrong;
-            sum.ambiguous += errors.ambiguous;
-        }
-        result.wrong_lit += tile.wrong_lit;
-        candidates.extend(tile.first_wrong);
-    }
-    for errors in &result.per_light {
-        result.samples += errors.samples;
-        result.wrong += errors.wrong;
-        result.ambiguous += errors.ambiguous;
-    }
-    result.wrong_shadowed = result.wrong - result.wrong_lit;
-    result.worst = worst::choose(oracle, &rays, lights, candidates);
-    result
+    Verdicts::new(oracle, view, lights, options.near, progress).judge(
+        oracle,
+        mask,
+        &options.skipped,
+    )
 }
 
-fn judge_tile(
-    oracle: &Oracle,
-    rays: &EyeRays,
-    lights: &[Light],
-    tile: &tile::Tile,
-    method_lit: &impl Fn(u32, u32, usize) -> bool,
-) -> TileErrors {
-    let pixels = tile.pixels(oracle, rays);
-    let mut around: Vec<Option<Box<Neighbourhood>>> = Vec::new();
-    around.resize_with(pixels.len(), || None);
-    let mut errors = TileErrors::default();
-    tile::samples(oracle, &pixels, lights, |light, k, verdict| {
-        if errors.lights.last().is_none_or(|last| last.0 != light) {
-            errors.lights.push((light, LightErrors::default()));
-        }
-        let Some((_, of_light)) = errors.lights.last_mut() else {
-            return;
+impl Verdicts {
+    /// Judges a mask. `skipped` has one flag a light, true if the method did not draw it, or none.
+    ///
+    /// # Panics
+    /// If the mask's size or number of lights is not that of the view and the lights, or if
+    /// `skipped` is neither empty nor one flag a light: a checker must not guess.
+    pub fn judge(&mut self, oracle: &Oracle, mask: &Mask, skipped: &[bool]) -> Judgement {
+        self.check(mask, skipped);
+        let tiles = self.errors(oracle, &says_lit(mask, skipped));
+        let mut result = Judgement {
+            pixels: u64::from(self.size[0]) * u64::from(self.size[1]),
+            lights: self.lights.len() as u32,
+            samples: 0,
+            wrong: 0,
+            wrong_lit: 0,
+            wrong_shadowed: 0,
+            ambiguous: 0,
+            tolerance_px: TOLERANCE_PX,
+            tolerance_depth: TOLERANCE_DEPTH,
+            worst: Vec::new(),
+            per_light: vec![LightErrors::default(); self.lights.len()],
         };
-        of_light.samples += 1;
-        let pixel = &pixels[k];
-        let kind = match (method_lit(pixel.x, pixel.y, light), verdict) {
-            (true, Verdict::Shadowed) => WrongKind::Lit,
-            (false, Verdict::Lit) => WrongKind::Shadowed,
-            _ => return,
-        };
-        let near =
-            around[k].get_or_insert_with(|| Box::new(Neighbourhood::of(oracle, rays, pixel)));
-        if near.is_ambiguous(oracle, &lights[light], verdict) {
-            of_light.ambiguous += 1;
-            return;
+        let mut candidates = Vec::new();
+        for tile in tiles {
+            for (light, errors) in tile.lights {
+                let sum = &mut result.per_light[light];
+                sum.samples += errors.samples;
+                sum.wrong += errors.wrong;
+                sum.ambiguous += errors.ambiguous;
+            }
+            result.wrong_lit += tile.wrong_lit;
+            candidates.extend(tile.first_wrong);
         }
-        of_light.wrong += 1;
-        errors.wrong_lit += u64::from(kind == WrongKind::Lit);
-        if of_light.wrong == 1 {
-            let (x, y, light) = (pixel.x, pixel.y, light as u32);
-            errors.first_wrong.push(Worst {
-                x,
-                y,
-                light,
-                kind,
-                firm_px: 0.0,
-            });
+        for errors in &result.per_light {
+            result.samples += errors.samples;
+            result.wrong += errors.wrong;
+            result.ambiguous += errors.ambiguous;
         }
-    });
-    errors
+        result.wrong_shadowed = result.wrong - result.wrong_lit;
+        result.worst = worst::choose(oracle, &self.rays, &self.lights, candidates);
+        result
+    }
+
+    /// Where a mask errs that [`Verdicts::judge`] was given before; before that, nothing counts as
+    /// ambiguous.
+    ///
+    /// # Panics
+    /// As [`Verdicts::judge`].
+    pub fn error_map(&self, mask: &Mask, skipped: &[bool]) -> ErrorMap {
+        self.check(mask, skipped);
+        self.map(says_lit(mask, skipped))
+    }
+
+    fn check(&self, mask: &Mask, skipped: &[bool]) {
+        assert_eq!(mask.size, self.size, "mask and view differ in size");
+        assert_eq!(
+            mask.lights as usize,
+            self.lights.len(),
+            "mask and scene differ in lights"
+        );
+        assert_eq!(
+            mask.words.len(),
+            Mask::word_count(mask.size, mask.lights),
+            "mask lacks words"
+        );
+        assert!(
+            skipped.is_empty() || skipped.len() == self.lights.len(),
+            "one skip flag a light"
+        );
+    }
+}
+
+fn says_lit(mask: &Mask, skipped: &[bool]) -> impl Fn(u32, u32, usize) -> bool + Sync {
+    move |x, y, light| !skipped.get(light).copied().unwrap_or(false) && mask.get(x, y, light as u32)
 }

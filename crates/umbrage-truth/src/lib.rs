@@ -38,7 +38,9 @@ pub mod rays;
 mod shadow;
 mod tile;
 
-pub use judge::{JudgeOptions, Judgement, LightErrors, Worst, WrongKind, judge};
+pub use judge::{
+    ErrorMap, JudgeOptions, Judgement, LightErrors, Verdicts, Worst, WrongKind, judge,
+};
 pub use mask::Mask;
 pub use oracle::{FirstHit, Oracle, Verdict};
 pub use rays::{EyeRays, NearClip};

@@ -13,11 +13,11 @@ use rayon::prelude::*;
 use umbrage_core::{Casting, Light, LightShape, Mesh, View};
 
 use crate::bvh::Bvh;
+use crate::judge::Verdicts;
 use crate::mask::Mask;
 use crate::predicate::{normal, passes_through, side_of_point};
 use crate::rays::{EyeRay, EyeRays, NearClip};
 use crate::shadow::{ShadowRay, Source};
-use crate::tile;
 
 /// Hits whose distances differ by less than this share count as one surface.
 const TIE: f64 = 1.0 / (1u64 << 46) as f64;
@@ -156,7 +156,7 @@ impl Oracle {
 
     /// The oracle's own mask: 1 where the verdict at the pixel's centre is [`Verdict::Lit`].
     pub fn shadow_mask(&self, view: &View, lights: &[Light], near: NearClip) -> Mask {
-        tile::shadow_mask(self, view, lights, near)
+        Verdicts::new(self, view, lights, near, &|_, _| ()).mask()
     }
 
     pub(crate) fn corners(&self, slot: usize) -> [DVec3; 3] {

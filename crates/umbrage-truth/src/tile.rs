@@ -5,12 +5,10 @@
 //! change a result.
 
 use glam::DVec3;
-use rayon::prelude::*;
-use umbrage_core::{Light, View};
+use umbrage_core::Light;
 
-use crate::mask::Mask;
 use crate::oracle::{Memory, Oracle, Surface, Verdict};
-use crate::rays::{EyeRays, NearClip};
+use crate::rays::EyeRays;
 
 /// Pixels along a tile's side.
 pub(crate) const SIDE: u32 = 16;
@@ -46,6 +44,17 @@ pub(crate) fn tiles(size: [u32; 2]) -> Vec<Tile> {
 impl Tile {
     pub(crate) fn pixel_count(&self) -> u64 {
         u64::from(self.x[1] - self.x[0]) * u64::from(self.y[1] - self.y[0])
+    }
+
+    /// A pixel's number in the tile, below `SIDE * SIDE`.
+    pub(crate) fn number(&self, pixel: &Pixel) -> usize {
+        ((pixel.y - self.y[0]) * SIDE + pixel.x - self.x[0]) as usize
+    }
+
+    /// Column and row of the pixel of this number.
+    pub(crate) fn place(&self, number: usize) -> [u32; 2] {
+        let number = number as u32;
+        [self.x[0] + number % SIDE, self.y[0] + number / SIDE]
     }
 
     /// The tile's pixels that see a surface, row by row.
@@ -95,27 +104,4 @@ pub(crate) fn samples(
             }
         }
     }
-}
-
-/// The oracle's own mask.
-pub(crate) fn shadow_mask(oracle: &Oracle, view: &View, lights: &[Light], near: NearClip) -> Mask {
-    let rays = EyeRays::new(view, near);
-    let mut mask = Mask::new(view.size, lights.len() as u32);
-    let lit: Vec<Vec<(u32, u32, u32)>> = tiles(view.size)
-        .into_par_iter()
-        .map(|tile| {
-            let pixels = tile.pixels(oracle, &rays);
-            let mut lit = Vec::new();
-            samples(oracle, &pixels, lights, |light, k, verdict| {
-                if verdict == Verdict::Lit {
-                    lit.push((pixels[k].x, pixels[k].y, light as u32));
-                }
-            });
-            lit
-        })
-        .collect();
-    for (x, y, light) in lit.into_iter().flatten() {
-        mask.set(x, y, light, true);
-    }
-    mask
 }

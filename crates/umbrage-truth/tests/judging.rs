@@ -8,7 +8,7 @@ use common::*;
 use glam::Vec3;
 use umbrage_core::{Casting, Light, Mesh, View};
 use umbrage_truth::{
-    EyeRays, JudgeOptions, Judgement, Mask, NearClip, Oracle, Verdict, WrongKind, judge,
+    EyeRays, JudgeOptions, Judgement, Mask, NearClip, Oracle, Verdict, Verdicts, WrongKind, judge,
 };
 
 fn judged(oracle: &Oracle, view: &View, lights: &[Light], mask: &Mask) -> Judgement {
@@ -230,6 +230,31 @@ fn the_mask_says_what_the_verdicts_say() {
             }
         }
     }
+}
+
+#[test]
+fn kept_verdicts_judge_as_new_ones_do() {
+    let oracle = Oracle::new(&landscape(20, 6.0, 12, 31));
+    let view = View::look_at(Vec3::new(4.0, 3.0, 5.0), Vec3::ZERO, 1.0, 0.1, [70, 41]);
+    let lights = lights_over(40, 5.0, 32);
+    let right = own_mask(&oracle, &view, &lights);
+    let mut wrong = right.clone();
+    wrong.words.iter_mut().step_by(3).for_each(|w| *w = !*w);
+    let dark = Mask::new(view.size, 40);
+    let mut kept = Verdicts::new(&oracle, &view, &lights, NearClip::Clamped, &|_, _| ());
+    let options = JudgeOptions::default();
+    // The second round meets verdicts whose ambiguity is known.
+    for mask in [&right, &wrong, &dark, &wrong] {
+        let found = kept.judge(&oracle, mask, &[]);
+        let anew = judge(&oracle, &view, &lights, mask, &options, &|_, _| ());
+        assert_eq!(found, anew);
+        let map = kept.error_map(mask, &[]);
+        let sum = |counts: &[u16]| counts.iter().map(|&c| u64::from(c)).sum::<u64>();
+        assert_eq!(sum(&map.wrong), found.wrong);
+        assert_eq!(sum(&map.ambiguous), found.ambiguous);
+    }
+    assert_eq!(kept.judge(&oracle, &right, &[]).wrong, 0);
+    assert!(kept.judge(&oracle, &wrong, &[]).wrong > 1000);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use thiserror::Error;
 use umbrage_core::cull::Culls;
-use umbrage_core::frame::FramePlan;
+use umbrage_core::frame::{Extrusion, FramePlan};
 use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, View};
 use wgpu::TextureFormat;
@@ -19,6 +19,9 @@ pub struct RendererOptions<'a> {
     pub sample_count: u32,
     /// Whether the device has `DEPTH_CLIP_CONTROL`, and the host's depth pass uses it.
     pub depth_clamp: bool,
+    /// As in the options of the plans to come. Made for infinite volumes, a renderer extrudes every
+    /// plan's to infinity, which is as right; made for finite ones, it goes by the plan.
+    pub extrusion: Extrusion,
     /// What volumes write to the first colour target: nothing, but for debug views.
     pub volume_color: VolumeColor,
 }
@@ -82,7 +85,7 @@ pub struct Frame<'a> {
 pub struct Uploaded {
     /// Quads and caps.
     pub volume_bytes: u64,
-    /// The view, the lights' positions, and their scissors and ranges of quads.
+    /// The view, the lights' positions and distances of extrusion, and their scissors and ranges of quads.
     pub other_bytes: u64,
 }
 

@@ -13,12 +13,14 @@
 #![forbid(unsafe_code)]
 
 mod buffers;
+mod faces;
 mod host;
 mod pipelines;
 mod receivers;
 mod renderer;
 mod world;
 
+pub use faces::{CountStep, FaceOptions, VolumeFaces};
 pub use host::{Frame, RenderError, RendererOptions, Uploaded, ViewUniform, VolumeColor};
 pub use receivers::{Call, LightCalls};
 pub use renderer::{LIGHT_STENCIL, ShadowRenderer};

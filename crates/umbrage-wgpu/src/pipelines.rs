@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use umbrage_core::frame::Extrusion;
 use wgpu::{
     BindGroupLayout, CompareFunction, DepthStencilState, Device, RenderPipeline, ShaderModule,
     StencilFaceState, StencilOperation, StencilState,
@@ -16,6 +17,26 @@ pub(crate) struct Pipelines {
     pub(crate) zfail_caps: RenderPipeline,
     pub(crate) zfail_reversed_caps: RenderPipeline,
     pub(crate) clean: RenderPipeline,
+    pub(crate) shared: Shared,
+}
+
+/// What all pipelines of volumes are made from.
+#[derive(Debug)]
+pub(crate) struct Shared {
+    pub(crate) module: ShaderModule,
+    pub(crate) layout: wgpu::PipelineLayout,
+    pub(crate) depth_stencil_format: wgpu::TextureFormat,
+    pub(crate) sample_count: u32,
+    pub(crate) depth_clamp: bool,
+    pub(crate) extrusion: Extrusion,
+}
+
+impl Shared {
+    /// Constants of the vertex shaders, for volumes that end as `extrusion` says.
+    pub(crate) fn constants(extrusion: Extrusion) -> [(&'static str, f64); 1] {
+        let is_finite = extrusion != Extrusion::Infinite;
+        [("UMBRAGE_FINITE", f64::from(u8::from(is_finite)))]
+    }
 }
 
 /// When a side or cap counts.
@@ -55,6 +76,14 @@ impl Pipelines {
             zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind),
             zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed),
             clean: build("umbrage clean", "everywhere", Counts::Clean),
+            shared: Shared {
+                module,
+                layout,
+                depth_stencil_format: options.depth_stencil_format,
+                sample_count: options.sample_count,
+                depth_clamp: options.depth_clamp,
+                extrusion: options.extrusion,
+            },
         }
     }
 }
@@ -128,7 +157,10 @@ fn pipeline(
         vertex: wgpu::VertexState {
             module,
             entry_point: Some(vertex_entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &Shared::constants(options.extrusion),
+                ..Default::default()
+            },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState {

@@ -2,7 +2,7 @@
 
 use umbrage_core::Light;
 use umbrage_core::cull::Cull;
-use umbrage_core::frame::{FramePlan, LightPath, LightPlan};
+use umbrage_core::frame::{Extrusion, FramePlan, LightPath, LightPlan};
 use umbrage_core::volume::Version;
 use umbrage_core::world::World;
 use wgpu::{
@@ -28,7 +28,7 @@ pub const LIGHT_STENCIL: StencilFaceState = StencilFaceState {
 /// Draws volumes into the stencil of a host's pass, light after light.
 #[derive(Debug)]
 pub struct ShadowRenderer {
-    pipelines: Pipelines,
+    pub(crate) pipelines: Pipelines,
     layout: BindGroupLayout,
     view: Buffer,
     view_size: [u32; 2],
@@ -37,6 +37,9 @@ pub struct ShadowRenderer {
     quads_version: Version,
     caps: Growing,
     lights: Growing,
+    /// How far each is extruded; unused if the renderer was made for infinite volumes.
+    distances: Growing,
+    extrusion: Extrusion,
     light_count: u32,
     world: WorldBuffers,
     /// With all quads, and with those that the receivers keep.
@@ -82,6 +85,8 @@ impl ShadowRenderer {
             quads_version: Version::default(),
             caps: growing("umbrage caps"),
             lights: growing("umbrage lights"),
+            distances: growing("umbrage distances"),
+            extrusion: options.extrusion,
             light_count: 0,
             world: WorldBuffers::new(device),
             bind_groups: None,
@@ -143,6 +148,11 @@ impl ShadowRenderer {
         volumes += self.caps.write(device, queue, caps)?;
         let points = bytemuck::cast_slice(&homogeneous);
         let mut others = self.lights.write(device, queue, points)?;
+        if self.extrusion != Extrusion::Infinite {
+            let distances: Vec<f32> = frame.plan.lights.iter().map(shader_distance).collect();
+            let distances = bytemuck::cast_slice(&distances);
+            others += self.distances.write(device, queue, distances)?;
+        }
         let asked = frame.culls.has(Cull::Receivers) || frame.culls.has(Cull::Quads);
         if let Some(receivers) = self.receivers.as_mut().filter(|_| asked) {
             others += receivers.prepare(device, queue, frame)?;
@@ -168,8 +178,11 @@ impl ShadowRenderer {
 
     fn bind(&self, device: &Device, quads: &Buffer) -> BindGroup {
         let [positions, edges, triangles] = self.world.buffers();
-        let (caps, lights) = (&self.caps.buffer, &self.lights.buffer);
-        let buffers = [&self.view, positions, edges, triangles, quads, caps, lights];
+        let [caps, lights, distances] =
+            [&self.caps, &self.lights, &self.distances].map(|growing| &growing.buffer);
+        let buffers = [
+            &self.view, positions, edges, triangles, quads, caps, lights, distances,
+        ];
         let entries: Vec<_> = (0..)
             .zip(buffers)
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -254,33 +267,15 @@ impl ShadowRenderer {
         for (number, light) in drawn.filter(|(_, light)| !light.scissor.is_empty()) {
             let s = light.scissor;
             pass.set_scissor_rect(s.x, s.y, s.width, s.height);
-            let sides = match light.path {
-                LightPath::ZPass { .. } => &self.pipelines.zpass_sides,
-                _ => &self.pipelines.zfail_sides,
-            };
-            let reversed = &self.pipelines.zfail_reversed_caps;
-            let mut counted = false;
-            for (range, pipeline, offset) in [
-                (&light.quads, sides, LightCalls::SIDES),
-                (&light.caps, &self.pipelines.zfail_caps, LightCalls::CAPS),
-                (&light.reversed_caps, reversed, LightCalls::REVERSED_CAPS),
-            ] {
-                if range.is_empty() {
-                    continue;
-                }
-                counted = true;
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, bind_group, &[]);
-                match calls {
-                    Some(calls) => {
-                        pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
-                    }
-                    None => {
-                        let instance = number as u32..number as u32 + 1;
-                        pass.draw(6 * range.start..6 * range.end, instance);
-                    }
-                }
-            }
+            let p = &self.pipelines;
+            let sides = [&p.zpass_sides, &p.zfail_sides];
+            let counted = self.draw_volume(
+                pass,
+                number,
+                light,
+                sides,
+                [&p.zfail_caps, &p.zfail_reversed_caps],
+            );
             pass.set_stencil_reference(u32::from(light.stencil_reference));
             draw_light(pass, number, light);
             if let Some(calls) = calls.filter(|_| counted) {
@@ -289,6 +284,51 @@ impl ShadowRenderer {
                 pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
             }
         }
+    }
+
+    /// Draws a light's quads and caps over the scissor that is set, with `sides` for z-pass and for
+    /// z-fail, and `caps` for triangles taken as wound and for those taken reversed; false if it has
+    /// none.
+    pub(crate) fn draw_volume(
+        &self,
+        pass: &mut RenderPass<'_>,
+        number: usize,
+        light: &LightPlan,
+        sides: [&wgpu::RenderPipeline; 2],
+        caps: [&wgpu::RenderPipeline; 2],
+    ) -> bool {
+        let Some(bind_groups) = &self.bind_groups else {
+            return false;
+        };
+        let calls = self.calls();
+        let bind_group = &bind_groups[usize::from(calls.is_some())];
+        let sides = match light.path {
+            LightPath::ZPass { .. } => sides[0],
+            _ => sides[1],
+        };
+        let mut counted = false;
+        for (range, pipeline, offset) in [
+            (&light.quads, sides, LightCalls::SIDES),
+            (&light.caps, caps[0], LightCalls::CAPS),
+            (&light.reversed_caps, caps[1], LightCalls::REVERSED_CAPS),
+        ] {
+            if range.is_empty() {
+                continue;
+            }
+            counted = true;
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, bind_group, &[]);
+            match calls {
+                Some(calls) => {
+                    pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
+                }
+                None => {
+                    let instance = number as u32..number as u32 + 1;
+                    pass.draw(6 * range.start..6 * range.end, instance);
+                }
+            }
+        }
+        counted
     }
 
     /// The draw of light number `light` for the host's own pipeline and bind groups; the instance
@@ -352,8 +392,16 @@ impl ShadowRenderer {
     }
 }
 
+/// As the volume shader takes it: 0 for infinity, which WGSL does not promise to keep.
+fn shader_distance(light: &LightPlan) -> f32 {
+    match light.extrusion_m.is_finite() {
+        true => light.extrusion_m,
+        false => 0.0,
+    }
+}
+
 fn bind_group_layout(device: &Device) -> BindGroupLayout {
-    uniform_and_storage(device, "umbrage volume", ShaderStages::VERTEX, 6)
+    uniform_and_storage(device, "umbrage volume", ShaderStages::VERTEX, 7)
 }
 
 fn light_layout(device: &Device) -> BindGroupLayout {

@@ -90,14 +90,15 @@
 #![forbid(unsafe_code)]
 
 pub use umbrage_core::frame::{
-    self, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect, SkipReason, ZFailReason,
+    self, Distance, Extrusion, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect,
+    SkipReason, ZFailReason,
 };
-pub use umbrage_core::volume::{self, VolumeBuilder, Volumes};
+pub use umbrage_core::volume::{self, Construction, VolumeBuilder, Volumes};
 pub use umbrage_core::world::{
     self, ObjectError, ObjectId, Pose, SavedWorldError, World, WorldError, WorldReport,
 };
 pub use umbrage_core::{Casting, Cull, Culls, Fingerprint, Light, LightShape, Mesh, View};
 pub use umbrage_wgpu::{
-    CLIP_WGSL, Call, Frame, LIGHT_STENCIL, LightCalls, RenderError, RendererOptions,
-    ShadowRenderer, Uploaded, ViewUniform, VolumeColor, light_wgsl,
+    CLIP_WGSL, Call, CountStep, FaceOptions, Frame, LIGHT_STENCIL, LightCalls, RenderError,
+    RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces, light_wgsl,
 };

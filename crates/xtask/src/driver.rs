@@ -5,9 +5,10 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use crate::Stop;
+use crate::apt::Apt;
 
 /// What to do where no driver can be installed for the user.
 pub(crate) const ADVICE: &str = "\
@@ -30,18 +31,13 @@ pub(crate) fn ensure() -> Result<(), Stop> {
 
 /// Installs Mesa's Vulkan drivers through apt, or prints what to do.
 pub(crate) fn install() -> Result<(), Stop> {
-    let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
-    let Some(sudo) = administrator().filter(|_| is_debian_like(&release)) else {
+    let Some(apt) = Apt::here() else {
         eprintln!("{ADVICE}");
         return Err(Stop::NoDriver);
     };
     println!("No Vulkan driver here: installing Mesa's software driver (lavapipe) through apt.");
-    if !apt(sudo, &["update"]) {
-        println!("apt-get update failed; trying with the package lists that are there.");
-    }
     let packages = ["libvulkan1", "mesa-vulkan-drivers"];
-    let install = [&["install", "-y", "--no-install-recommends"], &packages[..]].concat();
-    if apt(sudo, &install) && is_present() {
+    if apt.install(&packages) && is_present() {
         println!("Installed {}.", packages.join(" and "));
         return Ok(());
     }
@@ -119,51 +115,6 @@ fn library_path(manifest: &str) -> Option<&str> {
     rest.split('"').nth(1).filter(|path| !path.is_empty())
 }
 
-fn is_debian_like(os_release: &str) -> bool {
-    os_release
-        .lines()
-        .filter_map(|line| line.strip_prefix("ID=").or(line.strip_prefix("ID_LIKE=")))
-        .any(|ids| {
-            ids.trim_matches('"')
-                .split(' ')
-                .any(|id| matches!(id, "debian" | "ubuntu"))
-        })
-}
-
-/// How to run a command as root without a question.
-#[derive(Clone, Copy)]
-enum Sudo {
-    AlreadyRoot,
-    Passwordless,
-}
-
-fn administrator() -> Option<Sudo> {
-    let id = Command::new("id").arg("-u").output().ok()?;
-    if String::from_utf8_lossy(&id.stdout).trim() == "0" {
-        return Some(Sudo::AlreadyRoot);
-    }
-    let mut ask = Command::new("sudo");
-    ask.args(["-n", "true"])
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
-    ask.status().ok()?.success().then_some(Sudo::Passwordless)
-}
-
-fn apt(sudo: Sudo, args: &[&str]) -> bool {
-    let mut command = match sudo {
-        Sudo::AlreadyRoot => Command::new("env"),
-        Sudo::Passwordless => {
-            let mut command = Command::new("sudo");
-            command.args(["-n", "env"]);
-            command
-        }
-    };
-    command
-        .args(["DEBIAN_FRONTEND=noninteractive", "apt-get"])
-        .args(args);
-    command.status().is_ok_and(|status| status.success())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,12 +124,5 @@ mod tests {
         let text = r#"{ "ICD": { "api_version": "1.4", "library_path" : "libvulkan_lvp.so" } }"#;
         assert_eq!(library_path(text), Some("libvulkan_lvp.so"));
         assert_eq!(library_path("{}"), None);
-    }
-
-    #[test]
-    fn debian_and_its_descendants_have_apt() {
-        assert!(is_debian_like("NAME=x\nID=debian\n"));
-        assert!(is_debian_like("ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n"));
-        assert!(!is_debian_like("ID=fedora\nVERSION_ID=41\n"));
     }
 }

@@ -4,6 +4,8 @@
 //! 3 no usable graphics driver. Standard library only, so that it compiles in a second.
 #![forbid(unsafe_code)]
 
+mod apt;
+mod browser;
 mod checks;
 mod demo;
 mod driver;
@@ -19,8 +21,9 @@ cargo xtask <task>
           none (Debian, Ubuntu), builds the release binary and renders the bundled world with
           all its lights to target/demo/.
   test    Everything that CI runs, in its order, stopping at the first failure: driver,
-          formatting, clippy, tests with every validator on (dev profile), GPU against
-          oracle at speed (release profile), every bench once, documentation.
+          browser (installed likewise; without one the tests of HTML reports are skipped),
+          formatting, clippy, tests with every validator on (dev profile), GPU against oracle
+          at speed (release profile), every bench once, documentation.
   lint    The quick half of `test`: formatting and clippy.
 
 More than one task may be named; they run in order. Exit codes: 0 done, 1 a step failed,

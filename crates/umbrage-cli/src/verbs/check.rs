@@ -12,14 +12,14 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{CheckReport, LightsByPath, WorstPixel};
 use crate::setting::Setting;
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, draws masks, judges them; a wrong pixel-light fails an exact method.
 pub(crate) fn run(args: &CheckArgs) -> Result<(), CliError> {
     let setting = Setting::new(&args.scene, &args.common)?;
     let report = check(&setting, args)?;
     args.common.results.show(&table(&report), &report)?;
-    if report.wrong > 0 && args.common.run.method.0.is_exact() {
+    if report.wrong > 0 && args.common.method.0.is_exact() {
         let (wrong, samples) = (report.wrong, report.samples);
         return Err(CliError::CheckFailed(format!(
             "{wrong} of {samples} pixel-lights are wrong"
@@ -36,7 +36,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         view,
     } = setting;
     let run = &args.common.run;
-    let method = run.method.0;
+    let method = args.common.method.0;
     let bar = Bar::new(args.common.results.quiet);
     bar.stage("open adapter", 0);
     let mut lab = Lab::new(Gpu::open(&run.adapter)?);
@@ -44,6 +44,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
     bar.stage("draw masks", 0);
     lab.prepare(stage, lights, view, method);
     let mask = lab.mask(stage, lights, view)?;
+    let unrepresentable = lab.unrepresentable(stage, lights, view)?;
     bar.stage("build oracle", 0);
     let oracle = Oracle::new(&stage.mesh);
     bar.stage("judge", u64::from(view.size[0]) * u64::from(view.size[1]));
@@ -71,6 +72,7 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         samples: found.samples,
         wrong: found.wrong,
         ambiguous: found.ambiguous,
+        unrepresentable: unrepresentable.map(|bits| bits.words.iter().map(ones).sum()),
         tolerance_px: found.tolerance_px,
         tolerance_depth: found.tolerance_depth,
         closed: lab.volumes.check_closed(&stage.world).is_ok(),
@@ -81,6 +83,10 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
             skipped,
         },
     })
+}
+
+fn ones(word: &u32) -> u64 {
+    u64::from(word.count_ones())
 }
 
 fn table(report: &CheckReport) -> Table {
@@ -107,6 +113,9 @@ fn table(report: &CheckReport) -> Table {
                 "NOT CLOSED"
             },
         ]);
+    if let Some(unrepresentable) = report.unrepresentable {
+        table.count("layers beyond the mask", unrepresentable);
+    }
     for worst in &report.worst {
         table.row([
             format!("wrong at {}, {}", worst.x, worst.y),

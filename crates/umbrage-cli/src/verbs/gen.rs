@@ -6,7 +6,7 @@ use crate::args::GenArgs;
 use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::GenReport;
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Generates and writes.
 pub(crate) fn run(args: &GenArgs) -> Result<(), CliError> {

@@ -9,30 +9,35 @@ use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
 use umbrage_lab::stage::{StageError, casting};
 use umbrage_scene::Progress;
 
+use crate::actor;
 use crate::args::InspectArgs;
 use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
 use crate::setting::{use_threads, world_step};
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Loads, builds, counts.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    use_threads(&args.common);
+    use_threads(&args.common.run);
     let bar = Bar::new(args.common.results.quiet);
     let start = Instant::now();
-    let scene = umbrage_scene::open(&args.scene, &bar)?;
-    let soup = scene.soup_at(args.common.world.origin.map(|point| point.0))?;
+    let options = &args.common.world;
+    let scene = actor::open(&args.scene, &options.actors, &bar)?;
+    let posed = scene.posed(options.time);
+    let soup = scene.soup_posed(&posed, options.origin.map(|point| point.0))?;
     let load = start.elapsed().as_secs_f64() * 1e3;
 
     let world_file = args.common.world.file.as_deref();
     bar.stage(world_step(world_file), 0);
     // Every triangle counts here, whatever it casts.
-    let mesh = Mesh {
+    let mut mesh = Mesh {
         casting: casting(&scene, &soup, args.common.world.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
     };
+    mesh.weld_within(args.common.world.weld)
+        .map_err(|error| StageError::new(&scene, None, error.into()))?;
     let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
         .map_err(|error| StageError::new(&scene, world_file, error))?;
     drop(bar);
@@ -62,7 +67,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             .by_array()
             .map(|(array, bytes)| (array, per_triangle(bytes)))
             .into(),
-        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes()),
+        face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes(&world)),
         lights: scene.lights.len() as u64,
         open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
@@ -102,7 +107,7 @@ fn table(report: &InspectReport) -> Table {
         bytes(&format!("  {array}"), amount);
     }
     bytes(
-        "face pointers, for sides and clusters",
+        "sides and face pointers, for sides and clusters",
         report.face_pointer_bytes_per_triangle,
     );
     let times = &report.build_ms;

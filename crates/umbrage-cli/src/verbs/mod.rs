@@ -1,5 +1,6 @@
 //! One file per verb: each takes its arguments, prints a table and writes its JSON.
 
+pub(crate) mod bench;
 pub(crate) mod check;
 #[path = "gen.rs"] // `gen` is a reserved word
 pub(crate) mod generate;

@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{LightReport, PathTaken, RenderReport, RenderTotals};
 use crate::setting::Setting;
-use crate::table::{Table, grouped};
+use umbrage_report::{Table, grouped};
 
 /// Lights in the table; the JSON has all of them.
 const LISTED: usize = 12;
@@ -37,8 +37,9 @@ fn draw(setting: &Setting, args: &RenderArgs) -> Result<RenderReport, CliError> 
     bar.stage("open adapter", 0);
     let mut lab = Lab::new(Gpu::open(&run.adapter)?);
     lab.culls = run.culls();
+    lab.application = run.shadows.into();
     bar.stage("draw", 0);
-    let method = run.method.0;
+    let method = args.common.method.0;
     let lit = lab.render(stage, lights, view, method, run.repeat.get())?;
     let report = report(&lab, setting, method);
     if let Some(path) = &args.output {

@@ -13,13 +13,14 @@ use std::time::Instant;
 use umbrage_core::volume::{Chain, Quad, VolumeBuilder, Volumes, facing};
 use umbrage_core::world::{Layer, Subset, World, query};
 use umbrage_core::{Cull, Culls, InstructionSet, Light};
+use umbrage_lab::stage::{Stage, StageError};
 
 use self::methods::Method;
 use crate::args::VolumesArgs;
 use crate::error::CliError;
 use crate::report::{VolumesLight, VolumesMethod, VolumesReport};
 use crate::setting::Setting;
-use crate::table::Table;
+use umbrage_report::Table;
 
 /// Scratch that all methods share.
 #[derive(Default)]
@@ -53,7 +54,12 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
         instructions.0.limit();
     }
     let setting = Setting::new(&args.scene, &args.common)?;
-    let world = &setting.stage.world;
+    // Generation alone: actors are triangles like others where they stand.
+    let flat = match setting.stage.actors.is_empty() {
+        true => None,
+        false => Some(flat(&setting.stage)?),
+    };
+    let world = flat.as_ref().unwrap_or(&setting.stage.world);
     let lights: Vec<Light> = setting.lights.iter().map(|light| light.light).collect();
     let mut runs: Vec<Run> = methods::all(world)
         .into_iter()
@@ -122,6 +128,14 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
         lights_detail,
     };
     args.common.results.show(&table(&report), &report)
+}
+
+/// A world of everything on the stage.
+fn flat(stage: &Stage) -> Result<World, StageError> {
+    World::build(&stage.mesh).map_err(|error| StageError::World {
+        scene: stage.scene.name.clone(),
+        error,
+    })
 }
 
 impl Run {

@@ -9,6 +9,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::bounds::{Rect, light_rect};
+use super::extrusion::{Cosines, Drawn, Extrusion, is_beyond_range};
 use super::eye_count::{EyeCount, eye_count};
 use super::view::View;
 use crate::cull::{Cull, Culls};
@@ -22,6 +23,9 @@ use crate::world::World;
 pub struct PlanOptions {
     /// Which stencil path lights take.
     pub path: PathRule,
+    /// Where volumes end. A finite one is drawn by z-fail where the eye is outside the light's
+    /// range: z-pass has no dark cap, which an eye ray from there may cross.
+    pub extrusion: Extrusion,
     /// Which steps skip work.
     pub culls: Culls,
 }
@@ -30,6 +34,7 @@ impl Default for PlanOptions {
     fn default() -> Self {
         Self {
             path: PathRule::ZPassWhereExact,
+            extrusion: Extrusion::Infinite,
             culls: Culls::EVERY,
         }
     }
@@ -64,6 +69,8 @@ pub enum LightPath {
 pub enum ZFailReason {
     /// The eye is (almost) on a side of its volume.
     EyeOnSide,
+    /// The volume is finite, and the eye outside the light's range.
+    EyeBeyondRange,
     /// The plan's options ask for it.
     Asked,
 }
@@ -96,6 +103,9 @@ impl LightPath {
         match self {
             LightPath::ZPass { .. } => "",
             LightPath::ZFail(ZFailReason::EyeOnSide) => "the eye is on a side of its volume",
+            LightPath::ZFail(ZFailReason::EyeBeyondRange) => {
+                "the volume is finite, and the eye outside the light's range"
+            }
             LightPath::ZFail(ZFailReason::Asked) => "asked for",
             LightPath::Skipped(SkipReason::OutsideView) => "its range is outside the view",
             LightPath::Skipped(SkipReason::NothingInRange) => "no triangle is in its range",
@@ -123,6 +133,9 @@ pub struct LightPlan {
     pub caps: Range<u32>,
     /// Its cap triangles that are taken with reversed winding, in [`FramePlan::caps`].
     pub reversed_caps: Range<u32>,
+    /// Distance from the light to which its volume is extruded, in metres; infinite unless
+    /// [`PlanOptions::extrusion`] asks for less.
+    pub extrusion_m: f32,
 }
 
 /// One view's plan for all lights.
@@ -133,6 +146,7 @@ pub struct FramePlan {
     /// The chains of the lights that need caps.
     pub caps: Vec<ChainTriangle>,
     counts: EyeCounts,
+    cosines: Cosines,
 }
 
 /// Eye counts of the last plan, by the stamp of each light's volume.
@@ -175,8 +189,16 @@ impl FramePlan {
         self.lights.clear();
         self.caps.clear();
         self.counts.look_from(view.eye, lights.len());
+        self.cosines.fit(lights.len());
         for (number, (light, volume)) in lights.iter().zip(&volumes.lights).enumerate() {
             let scissor = light_rect(view, light);
+            let mut distance = |drawn| {
+                let extrusion = options.extrusion;
+                self.cosines
+                    .distance(extrusion, world, light, volumes, number, drawn)
+            };
+            let is_finite = options.extrusion != Extrusion::Infinite;
+            let is_beyond = is_finite && is_beyond_range(light, view.eye);
             let path = if scissor.is_empty() && options.culls.has(Cull::View) {
                 LightPath::Skipped(SkipReason::OutsideView)
             } else if volume.stamp == 0 {
@@ -185,6 +207,8 @@ impl FramePlan {
                 LightPath::Skipped(SkipReason::NothingInRange)
             } else if options.path == PathRule::ZFailAlways {
                 LightPath::ZFail(ZFailReason::Asked)
+            } else if is_beyond && distance(Drawn::Whole).is_finite() {
+                LightPath::ZFail(ZFailReason::EyeBeyondRange)
             } else {
                 let (chain, quads) = (volumes.chain_of(number), volumes.quads_of(number));
                 let count = || eye_count(world, light, chain, quads, view.eye);
@@ -210,7 +234,13 @@ impl FramePlan {
                 let all = quads.len() as u32;
                 quads.end = quads.start + volume.in_range.for_eye(light, view.eye, all);
             }
+            let extrusion_m = match path {
+                LightPath::ZFail(_) => distance(Drawn::Whole),
+                LightPath::ZPass { .. } if !is_beyond => distance(Drawn::Sides(quads.len() as u32)),
+                _ => f32::INFINITY,
+            };
             self.lights.push(LightPlan {
+                extrusion_m,
                 stencil_reference: match path {
                     // Lit where eye count + sides crossed is 0; stencil arithmetic is modulo 256.
                     LightPath::ZPass { eye_count } => (eye_count as u8).wrapping_neg(),
@@ -241,6 +271,7 @@ impl FramePlan {
                 quads: 0..0,
                 caps: 0..0,
                 reversed_caps: 0..0,
+                extrusion_m: f32::INFINITY,
             }
         }));
     }

@@ -15,8 +15,10 @@ use rayon::prelude::*;
 use super::cache::{Job, Kept};
 #[cfg(debug_assertions)]
 use super::check_closed;
+use super::construction::{Makes, Marks};
 use super::{
-    Chain, HiddenScratch, LightVolume, Quad, Volumes, counter, drop_hidden, facing, range_first,
+    Chain, Construction, Crow, HiddenScratch, LightVolume, Quad, Volumes, drop_hidden, facing,
+    range_first,
 };
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
@@ -28,11 +30,15 @@ use crate::world::{Layer, Subset, World, query};
 pub struct VolumeBuilder {
     /// Which steps skip work. Changing them rebuilds what they change.
     pub culls: Culls,
+    /// What makes quads of chains. Changing it rebuilds everything.
+    pub construction: Construction,
     /// Casters among which one [`VolumeBuilder::build`] looks for hidden ones: what it may spend on
     /// lights that came to rest. Some 0.3 microseconds each.
     pub hidden_budget: u32,
     scratch: Mutex<Vec<Scratch>>,
     chunks: Vec<Built>,
+    /// Of the last world that was built by [`Construction::Crow`].
+    crow: Crow,
 }
 
 /// What one thread needs while it builds.
@@ -40,8 +46,8 @@ pub struct VolumeBuilder {
 struct Scratch {
     subset: Subset,
     chain: Vec<Chain>,
-    touched: Vec<Quad>,
-    counters: Vec<i32>,
+    marks: Marks,
+    sorting: Vec<Quad>,
     hidden: HiddenScratch,
 }
 
@@ -66,9 +72,11 @@ impl VolumeBuilder {
     pub fn new(culls: Culls) -> Self {
         Self {
             culls,
+            construction: Construction::Counter,
             hidden_budget: 1 << 14,
             scratch: Mutex::default(),
             chunks: Vec::new(),
+            crow: Crow::default(),
         }
     }
 
@@ -111,21 +119,33 @@ impl VolumeBuilder {
         budget: Option<u32>,
         volumes: &mut Volumes,
     ) -> usize {
-        volumes.forget_changes(world, lights, self.culls);
+        let construction = self.construction;
+        let culls = match construction {
+            Construction::Counter => self.culls,
+            Construction::Brute | Construction::Crow => self.culls.without(Cull::Hidden),
+        };
+        volumes.forget_changes(world, lights, culls, construction);
+        if construction == Construction::Crow {
+            self.crow.update(world);
+        }
         let jobs = &volumes.jobs(lights, wanted, budget)[..];
         let length = (jobs.len() / (8 * rayon::current_num_threads())).clamp(1, 16);
         let chunk_count = jobs.len().div_ceil(length);
         self.chunks
             .resize_with(chunk_count.max(self.chunks.len()), Built::default);
         let (pool, old) = (&self.scratch, &*volumes);
+        let makes = Makes {
+            construction,
+            crow: &self.crow,
+        };
         let build_chunk = |out: &mut Built, jobs: &[Job]| {
             let mut scratch = lock(pool).pop().unwrap_or_default();
-            scratch.counters.resize(world.edges.vertices.len(), 0);
+            scratch.marks.fit(world, construction);
             out.clear();
             for job in jobs {
                 let (light, kept) = (&lights[job.number], old.kept_fixed(job.number));
                 let hide = job.hide && old.culls.has(Cull::Hidden);
-                build_one(world, light, kept, hide, &mut scratch, out);
+                build_one(world, light, kept, hide, &makes, &mut scratch, out);
             }
             lock(pool).push(scratch);
         };
@@ -147,8 +167,8 @@ impl VolumeBuilder {
     }
 }
 
-/// Scratch is valid whatever happened to the thread that last held it: counters are only ever
-/// returned zeroed.
+/// Scratch is valid whatever happened to the thread that last held it: its marks are
+/// only ever returned zeroed.
 fn lock(pool: &Mutex<Vec<Scratch>>) -> std::sync::MutexGuard<'_, Vec<Scratch>> {
     pool.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -174,6 +194,7 @@ fn build_one(
     light: &Light,
     kept: Option<(&[Chain], u32)>,
     hide: bool,
+    makes: &Makes<'_>,
     scratch: &mut Scratch,
     out: &mut Built,
 ) {
@@ -209,18 +230,15 @@ fn build_one(
         facing(world, light, &scratch.subset, &mut scratch.chain);
         subset_triangles += scratch.subset.len() as u32;
     }
-    let Scratch {
-        chain,
-        touched,
-        counters,
-        ..
-    } = scratch;
-    counter(world, chain, counters, touched, &mut out.quads);
+    let chain = &scratch.chain;
+    makes.quads(world, chain, &mut scratch.marks, &mut out.quads);
     out.chains.extend_from_slice(chain);
     let quads = &mut out.quads[first_quad..];
-    let in_range = range_first(world, light, quads, touched);
+    let in_range = range_first(world, light, quads, &mut scratch.sorting);
     #[cfg(debug_assertions)]
-    if let Err(fault) = check_closed(world, chain.iter().flat_map(Chain::triangles), quads) {
+    if makes.construction != Construction::Crow
+        && let Err(fault) = check_closed(world, chain.iter().flat_map(Chain::triangles), quads)
+    {
         panic!("{fault}");
     }
     out.lights.push(LightVolume {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::build::Built;
 use super::store::Block;
-use super::{Chain, LightVolume, Volumes};
+use super::{Chain, Construction, LightVolume, Volumes};
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
 use crate::world::{Reach, World};
@@ -64,7 +64,13 @@ impl Key {
 
 impl Volumes {
     /// Marks as stale what is not of these lights in this world.
-    pub(super) fn forget_changes(&mut self, world: &World, lights: &[Light], culls: Culls) {
+    pub(super) fn forget_changes(
+        &mut self,
+        world: &World,
+        lights: &[Light],
+        culls: Culls,
+        construction: Construction,
+    ) {
         for key in self.keys.iter_mut().skip(lights.len()) {
             self.quad_store.free(&mut key.quads);
             self.chain_store.free(&mut key.chain);
@@ -74,8 +80,9 @@ impl Volumes {
         let changes = self.world.update(world);
         let all = !culls.has(Cull::Cache)
             || culls.has(Cull::Hidden) != self.culls.has(Cull::Hidden)
+            || self.construction != construction
             || changes.fixed;
-        self.culls = culls;
+        (self.culls, self.construction) = (culls, construction);
         let moved = changes.boxes;
         for ((key, volume), light) in self.keys.iter_mut().zip(&mut self.lights).zip(lights) {
             if all || key.light != Some(*light) {

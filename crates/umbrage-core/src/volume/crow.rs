@@ -1,89 +1,125 @@
-//! The classic: edges that point to their two faces (Crow 1977, Bergeron 1986). A baseline.
+//! The classic: unique edges with two face pointers each (Crow 1977, Bergeron 1986). A baseline.
 //!
-//! An edge is a silhouette where its faces differ. Edges with more or fewer than two triangles get
-//! what engines give them: triangles are paired off in opposite directions, and whoever is left
-//! has a dangling edge with one face. Written as well as the idea allows: one linear pass over all
-//! edges without a branch, or for a small chain a look at each side's other face.
+//! Takes a chain; gives a quad for each edge whose two faces differ, wound as the face that casts.
+//! The edge and its test are those of Aldridge and Woods 2004 (section 2.1), the rule for open edges
+//! that of the depth-fail tutorials (`if f0 > -1 && f1 > -1`). On a consistently wound two-manifold
+//! the quads are the counter's. Elsewhere they are what the idea makes of the geometry, and the
+//! volume need not close:
+//! - an edge of one triangle casts no quad;
+//! - a third and any later triangle on an edge is not seen: whatever it casts there is lost;
+//! - of two triangles that run the same way along their edge, the second is taken to run against
+//!   it. Both facing, they cast no quad where two are due; the second alone facing, its quad is
+//!   wound the wrong way round.
+//!
+//! A face outside the subset counts as one that does not cast (section 2.2). Written as well as the
+//! idea allows: one linear pass over all edges without a branch, or for a small chain a look at
+//! each side's edge.
 
 use super::{Chain, Quad};
 use crate::world::{EdgeUse, World};
 
-/// Face adjacency of a world, and scratch.
+/// Face pointers of a world's edges.
 #[derive(Clone, Debug, Default)]
 pub struct Crow {
-    /// The face that runs along an edge entry and the one that runs against it; `NONE` if missing.
+    /// Of each edge, the face that runs along it, then the one that runs against it; the only face
+    /// of an open edge twice, so that it differs from no one.
     faces: Vec<[u32; 2]>,
-    /// Edge of each entry: entries outnumber edges where more than two triangles meet.
-    edge: Vec<u32>,
-    /// Entry of each side.
-    entry_of_side: Vec<[u32; 3]>,
-    /// Coefficient of each triangle for the light at hand, and a 0 for `NONE`.
-    coefficient: Vec<i8>,
+    topology: Topology,
+}
+
+/// What a world's triangles and edges are, whatever their positions.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Topology {
+    fixed: u64,
+    /// When each object was inserted.
+    placed: Vec<u64>,
+}
+
+impl Topology {
+    fn is_of(&self, world: &World) -> bool {
+        let placed = world.objects.iter().map(|o| o.placed);
+        self.fixed == world.fixed_stamp && placed.eq(self.placed.iter().copied())
+    }
 }
 
 impl Crow {
-    /// Pairs off the triangles on each edge.
+    /// Finds the faces of each edge.
     pub fn new(world: &World) -> Self {
-        let triangles = world.triangles.len();
-        let none = triangles as u32;
-        let mut crow = Self {
-            coefficient: vec![0; triangles + 1],
-            ..Self::default()
-        };
-        // Entries of an edge that still lack a face, newest first.
-        let mut open: Vec<Vec<u32>> = vec![Vec::new(); world.edges.vertices.len()];
-        for t in 0..none {
-            let entries = world.edges.of_triangle(t).map(|u| {
-                let kind = usize::from(u.sign() < 0);
-                let waiting = &mut open[u.edge() as usize];
-                let fits = waiting
-                    .iter()
-                    .position(|&e| crow.faces[e as usize][kind] == none);
-                let entry = match fits {
-                    Some(at) => waiting.swap_remove(at),
-                    None => {
-                        crow.faces.push([none; 2]);
-                        crow.edge.push(u.edge());
-                        waiting.push(crow.faces.len() as u32 - 1);
-                        crow.faces.len() as u32 - 1
-                    }
-                };
-                crow.faces[entry as usize][kind] = t;
-                entry
-            });
-            crow.entry_of_side.push(entries);
+        const NONE: u32 = u32::MAX;
+        let mut faces = vec![[NONE; 2]; world.edges.vertices.len()];
+        for (t, corners) in (0..).zip(&world.triangles[..]) {
+            // What fills up the slots of objects is no triangle.
+            if corners[0] == corners[1] {
+                continue;
+            }
+            for u in world.edges.of_triangle(t) {
+                let edge = &mut faces[u.edge() as usize];
+                match edge.iter().position(|&face| face == NONE) {
+                    // The first takes the place of its direction, the second what is left.
+                    Some(0) if edge[1] == NONE => edge[usize::from(u.sign() < 0)] = t,
+                    Some(left) => edge[left] = t,
+                    None => {}
+                }
+            }
         }
-        crow
+        for [along, against] in &mut faces {
+            match (*along, *against) {
+                // No triangle uses this edge now: any will do.
+                (NONE, NONE) => (*along, *against) = (0, 0),
+                (NONE, face) => *along = face,
+                (face, NONE) => *against = face,
+                _ => {}
+            }
+        }
+        Self {
+            faces,
+            topology: Topology {
+                fixed: world.fixed_stamp,
+                placed: world.objects.iter().map(|o| o.placed).collect(),
+            },
+        }
     }
 
-    /// Bytes of adjacency: what edges with face pointers cost.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.faces[..])
-            + size_of_val(&self.edge[..])
-            + size_of_val(&self.entry_of_side[..])
+    /// Finds the faces anew if triangles came or went since; objects that moved change nothing.
+    pub fn update(&mut self, world: &World) {
+        if !self.topology.is_of(world) {
+            *self = Self::new(world);
+        }
     }
 
-    /// Appends the silhouette of `chain` to `quads`.
-    pub fn silhouette(&mut self, world: &World, chain: &[Chain], quads: &mut Vec<Quad>) {
+    /// Bytes of adjacency: face pointers, and each triangle's edges.
+    pub fn bytes(&self, world: &World) -> usize {
+        size_of_val(&self.faces[..]) + size_of_val(&world.edges.sides[..])
+    }
+
+    /// Appends the silhouette of `chain` to `quads`. `coefficients` has one entry a triangle, all
+    /// zero, and is all zero again afterwards.
+    pub fn silhouette(
+        &self,
+        world: &World,
+        chain: &[Chain],
+        coefficients: &mut [i8],
+        quads: &mut Vec<Quad>,
+    ) {
         for t in chain.iter().flat_map(Chain::triangles) {
-            self.coefficient[t.triangle() as usize] = t.coefficient() as i8;
+            coefficients[t.triangle() as usize] = t.coefficient() as i8;
         }
         if chain.len() * 4 > world.clusters.len() {
-            self.all_edges(quads);
+            self.all_edges(coefficients, quads);
         } else {
-            self.sides_of(chain, world, quads);
+            self.sides_of(chain, world, coefficients, quads);
         }
         for t in chain.iter().flat_map(Chain::triangles) {
-            self.coefficient[t.triangle() as usize] = 0;
+            coefficients[t.triangle() as usize] = 0;
         }
     }
 
-    fn all_edges(&self, quads: &mut Vec<Quad>) {
+    fn all_edges(&self, coefficients: &[i8], quads: &mut Vec<Quad>) {
         let mut len = quads.len();
-        // At most two quads an entry, and nearly always at most one.
+        // At most two quads an edge, and nearly always at most one.
         quads.resize(len + 2 * self.faces.len(), Quad::default());
-        for (&[along, against], &edge) in self.faces.iter().zip(&self.edge) {
-            let count = self.coefficient[along as usize] - self.coefficient[against as usize];
+        for (edge, &[along, against]) in (0..).zip(&self.faces) {
+            let count = coefficients[along as usize] - coefficients[against as usize];
             let quad = Quad(EdgeUse::new(edge, count < 0));
             quads[len] = quad;
             len += usize::from(count != 0);
@@ -95,19 +131,21 @@ impl Crow {
         quads.truncate(len);
     }
 
-    fn sides_of(&self, chain: &[Chain], world: &World, quads: &mut Vec<Quad>) {
+    fn sides_of(&self, chain: &[Chain], world: &World, coefficients: &[i8], quads: &mut Vec<Quad>) {
+        let mut len = quads.len();
+        let triangles: usize = chain.iter().map(Chain::len).sum();
+        // Written without a branch, kept if one is due.
+        quads.resize(len + 3 * triangles, Quad::default());
         for t in chain.iter().flat_map(Chain::triangles) {
-            let flip = u32::from(t.coefficient() < 0);
-            let uses = world.edges.of_triangle(t.triangle());
-            for (u, entry) in uses
-                .into_iter()
-                .zip(self.entry_of_side[t.triangle() as usize])
-            {
-                let other = self.faces[entry as usize][usize::from(u.sign() > 0)];
-                if i32::from(self.coefficient[other as usize]) != t.coefficient() {
-                    quads.push(Quad(EdgeUse(u.0 ^ flip)));
-                }
+            for u in world.edges.of_triangle(t.triangle()) {
+                let [along, against] = self.faces[u.edge() as usize];
+                let count = coefficients[along as usize] - coefficients[against as usize];
+                quads[len] = Quad(EdgeUse::new(u.edge(), count < 0));
+                // Two are due where both faces cast, from opposite sides: one from each.
+                let is_face = (t.triangle() == along) | (t.triangle() == against);
+                len += usize::from(is_face & (count != 0));
             }
         }
+        quads.truncate(len);
     }
 }

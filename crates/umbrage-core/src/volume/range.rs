@@ -58,7 +58,7 @@ impl Inner {
 
 /// Relative to the range, and of the cosine: far above what a shader's f32 test may be off by, with
 /// which a host decides where a light ends.
-pub(super) const SLACK: f64 = 1.0 / 1024.0;
+pub(crate) const SLACK: f64 = 1.0 / 1024.0;
 
 /// Where an edge's quad can matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

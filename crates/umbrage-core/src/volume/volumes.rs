@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::cache::Key;
 use super::store::{Store, Version};
-use super::{Chain, ChainTriangle, ClosureFault, Quad, RangePrefix, check_closed};
+use super::{Chain, ChainTriangle, ClosureFault, Construction, Quad, RangePrefix, check_closed};
 use crate::cull::Culls;
 use crate::world::{Seen, World};
 
@@ -50,6 +50,7 @@ pub struct Volumes {
     pub(super) chain_store: Store,
     pub(super) world: Seen,
     pub(super) culls: Culls,
+    pub(super) construction: Construction,
 }
 
 impl Volumes {

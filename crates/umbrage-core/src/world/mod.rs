@@ -8,6 +8,7 @@ mod array;
 mod boxes;
 mod bvh;
 mod clusters;
+mod deform;
 mod edges;
 mod extent;
 mod half_edges;
@@ -17,6 +18,8 @@ mod planes;
 mod query;
 mod save;
 mod seen;
+mod slots;
+mod snap;
 pub mod stages;
 mod subset;
 mod validate;
@@ -46,7 +49,7 @@ pub(crate) use planes::{FILTER, exact_side};
 pub(crate) use subset::lanes;
 pub use validate::WorldFault;
 
-use self::stages::Tree;
+use self::stages::{Tree, Welded};
 use crate::mesh::{Casting, Mesh};
 use crate::stamp;
 
@@ -80,6 +83,12 @@ pub enum WorldError {
     NotFinite {
         /// Offending vertex.
         vertex: usize,
+    },
+    /// A tolerance that is none.
+    #[error("a weld tolerance of {tolerance_m} m: give a finite length, zero or more")]
+    Tolerance {
+        /// As given.
+        tolerance_m: f32,
     },
     /// More half edges than a u32 with a direction bit can number.
     #[error("{triangles} triangles in one world; the limit is {limit}: split it in cells")]
@@ -137,7 +146,8 @@ pub struct BuildTimes {
 /// removed. All arrays hold the fixed part first, then the objects.
 #[derive(Clone, Debug, Default)]
 pub struct World {
-    /// Positions, distinct and numbered by first use in the fixed part and in each object.
+    /// Positions, numbered by first use in the fixed part and in each object; distinct but in objects
+    /// that deform.
     pub positions: Array<Vec3>,
     /// Three vertices a triangle, as wound in the mesh, in BVH leaf order.
     pub triangles: Array<[u32; 3]>,
@@ -196,6 +206,16 @@ impl World {
     /// Builds a world. Deterministic; in debug builds every invariant is checked.
     pub fn build(mesh: &Mesh) -> Result<Self, WorldError> {
         check_input(mesh)?;
+        let (world, _) = Self::build_welded(mesh, stages::weld);
+        #[cfg(debug_assertions)]
+        if let Err(fault) = world.validate() {
+            panic!("World::build broke an invariant: {fault}");
+        }
+        Ok(world)
+    }
+
+    /// Builds a world of a mesh that was checked; `weld` says which vertices are one.
+    fn build_welded(mesh: &Mesh, weld: impl FnOnce(&Mesh) -> Welded) -> (Self, Welded) {
         let start = Instant::now();
         let mut clock = Stopwatch(start);
         let mut report = WorldReport {
@@ -203,7 +223,7 @@ impl World {
             ..WorldReport::default()
         };
 
-        let welded = stages::weld(mesh);
+        let welded = weld(mesh);
         report.welded_vertices = welded.count;
         report.triangles = welded.kept.len();
         report.degenerate_triangles = mesh.triangles.len() - welded.kept.len();
@@ -239,11 +259,7 @@ impl World {
         world.report.bytes_per_triangle =
             world.bytes() as f64 / world.triangles.len().max(1) as f64;
         world.report.build_ms.total = start.elapsed().as_secs_f64() * 1e3;
-        #[cfg(debug_assertions)]
-        if let Err(fault) = world.validate() {
-            panic!("World::build broke an invariant: {fault}");
-        }
-        Ok(world)
+        (world, welded)
     }
 
     /// A new world, all of whose triangles are fixed.

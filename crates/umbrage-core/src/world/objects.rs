@@ -1,8 +1,9 @@
-//! Objects: parts of a world that can be added, moved and removed.
+//! Objects: parts of a world that can be added, moved, deformed and removed.
 //!
 //! Takes meshes and rigid poses; gives the same arrays that the fixed triangles have, so that
 //! query, facing, counter, eye count and renderer need not know one from the other. An object's
-//! topology (edges, clusters, tree) is built once; a pose rewrites its positions, planes and boxes.
+//! topology (edges, clusters, tree) is built once; a pose or new rest positions (see `deform`)
+//! rewrite its positions, planes and boxes.
 //! Its positions are transformed in f64 and rounded once: those f32 positions *are* the geometry,
 //! for CPU, GPU and oracle alike. Edges are never shared between objects: counters add up.
 
@@ -11,9 +12,10 @@ use std::ops::Range;
 use glam::{DQuat, DVec3, Vec3};
 use thiserror::Error;
 
-use super::array::Array;
+use super::deform::Given;
 use super::extent::Extent;
-use super::{LANES, Node, World, WorldError, boxes, planes};
+use super::stages::{self, Welded};
+use super::{LANES, World, WorldError, boxes, check_input, planes};
 use crate::mesh::{Casting, Mesh};
 use crate::stamp;
 
@@ -54,6 +56,27 @@ pub enum ObjectError {
     /// A pose with NaN, infinite or all-zero parts, or one that takes a vertex beyond f32.
     #[error("the pose takes the object nowhere: give a finite, non-zero rotation and translation")]
     Pose,
+    /// Vertices that became one when the object was inserted are to stand at different places.
+    #[error(
+        "vertices {first} and {second} were inserted as one and cannot part: \
+         insert the object with keys that tell them apart"
+    )]
+    Parted {
+        /// Vertex of the mesh that was inserted.
+        first: u32,
+        /// Another.
+        second: u32,
+    },
+    /// A list that must have an entry a vertex has not.
+    #[error("{found} {what} for {vertices} vertices: hand over one a vertex of the inserted mesh")]
+    Length {
+        /// "positions" or "keys".
+        what: &'static str,
+        /// Entries given.
+        found: usize,
+        /// Vertices of the mesh that was inserted.
+        vertices: usize,
+    },
     /// It was removed, or is of another world.
     #[error("no such object in this world: it was removed, or belongs to another world")]
     Unknown,
@@ -68,24 +91,42 @@ pub struct Object {
     pub room: Extent,
     /// When it was inserted; 0 in a free slot.
     pub placed: u64,
-    /// When it was last inserted, posed or removed.
+    /// When it was last inserted, posed, deformed or removed.
     pub changed: u64,
     /// Lower and upper corner of its box; empty if there is none.
     pub bounds: [Vec3; 2],
-    rest: Vec<Vec3>,
+    /// Where it stands.
+    pub(super) pose: Pose,
+    pub(super) rest: Vec<Vec3>,
+    pub(super) given: Given,
 }
 
 /// Of what has no triangle: nothing touches it.
 pub(crate) const EMPTY_BOX: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
 /// What stands in the place of a triangle that is none: no area, and casts nothing.
-const PADDING: [u32; 3] = [0; 3];
+pub(super) const PADDING: [u32; 3] = [0; 3];
 
 impl World {
     /// Adds an object with positions in its own space. Its edges are its own: they cancel with none
     /// of the world's.
     pub fn insert(&mut self, mesh: &Mesh, pose: &Pose) -> Result<ObjectId, ObjectError> {
-        let part = World::build(mesh)?;
+        check_input(mesh)?;
+        self.insert_welded(mesh, pose, stages::weld)
+    }
+
+    /// Inserts a mesh that was checked; `weld` says which vertices are one.
+    pub(super) fn insert_welded(
+        &mut self,
+        mesh: &Mesh,
+        pose: &Pose,
+        weld: impl FnOnce(&Mesh) -> Welded,
+    ) -> Result<ObjectId, ObjectError> {
+        let (part, welded) = World::build_welded(mesh, weld);
+        #[cfg(debug_assertions)]
+        if let Err(fault) = part.validate_topology() {
+            panic!("World::insert broke an invariant: {fault}");
+        }
         check(&part.positions, pose)?;
         // Padding to whole clusters included.
         let triangles = self.triangles.len() + part.triangles.len() + LANES;
@@ -100,21 +141,30 @@ impl World {
         let object = &mut self.objects[slot];
         object.placed = placed;
         object.rest = part.positions.to_vec();
+        object.given = Given::new(mesh, &welded, &part);
         object.extent = object.room.begin(part.fixed.lengths());
         self.write_topology(&part, slot);
         let id = ObjectId {
             slot: slot as u32,
             placed,
         };
-        self.pose(id, pose)?;
+        self.stand(slot, pose);
         Ok(id)
     }
 
     /// Moves an object.
     pub fn pose(&mut self, id: ObjectId, pose: &Pose) -> Result<(), ObjectError> {
         let slot = self.slot_of(id)?;
-        let object = &self.objects[slot];
-        check(&object.rest, pose)?;
+        check(&self.objects[slot].rest, pose)?;
+        self.stand(slot, pose);
+        Ok(())
+    }
+
+    /// Brings everything that depends on positions in step with rest positions and pose, which were
+    /// checked.
+    pub(super) fn stand(&mut self, slot: usize, pose: &Pose) {
+        let object = &mut self.objects[slot];
+        object.pose = *pose;
         let rotation = pose.rotation.normalize();
         let posed = object.rest.iter().map(|p| placed(rotation, pose, *p));
         let first = object.extent.vertices.start as usize;
@@ -125,7 +175,6 @@ impl World {
         self.refit(slot);
         self.stamp = stamp::next();
         self.objects[slot].changed = self.stamp;
-        Ok(())
     }
 
     /// Takes an object out. Its share of the arrays waits for another of its size.
@@ -133,6 +182,7 @@ impl World {
         let slot = self.slot_of(id)?;
         let object = &mut self.objects[slot];
         object.rest.clear();
+        object.given = Given::default();
         object.placed = 0;
         object.bounds = EMPTY_BOX;
         self.stamp = stamp::next();
@@ -161,99 +211,11 @@ impl World {
         }
     }
 
-    fn slot_of(&self, id: ObjectId) -> Result<usize, ObjectError> {
+    pub(super) fn slot_of(&self, id: ObjectId) -> Result<usize, ObjectError> {
         match self.objects.get(id.slot as usize) {
             Some(object) if object.placed == id.placed => Ok(id.slot as usize),
             _ => Err(ObjectError::Unknown),
         }
-    }
-
-    /// A free slot that holds `part` without much waste, or a new one at the end of the arrays.
-    fn slot_for(&mut self, part: &World) -> usize {
-        let needed = part.fixed.lengths();
-        let fits = |object: &Object| {
-            let room = object.room.lengths();
-            object.placed == 0 && (0..4).all(|i| needed[i] <= room[i] && room[i] <= 2 * needed[i])
-        };
-        if let Some(slot) = self.objects.iter().position(fits) {
-            return slot;
-        }
-        let clusters = self.clusters.len();
-        self.triangles.to_mut().resize(clusters * LANES, PADDING);
-        self.source.to_mut().resize(clusters * LANES, u32::MAX);
-        self.casting
-            .to_mut()
-            .resize(clusters * LANES, Casting::None);
-        let after = |length: usize, more: usize| length as u32..(length + more) as u32;
-        let room = Extent {
-            vertices: after(self.positions.len(), part.positions.len()),
-            triangles: after(self.triangles.len(), part.triangles.len()),
-            edges: after(self.edges.vertices.len(), part.edges.vertices.len()),
-            nodes: after(self.bvh.nodes.len(), part.bvh.nodes.len()),
-        };
-        self.positions
-            .to_mut()
-            .resize(room.vertices.end as usize, Vec3::ZERO);
-        self.triangles
-            .to_mut()
-            .resize(room.triangles.end as usize, PADDING);
-        self.source
-            .to_mut()
-            .resize(room.triangles.end as usize, u32::MAX);
-        self.casting
-            .to_mut()
-            .resize(room.triangles.end as usize, Casting::None);
-        self.edges
-            .vertices
-            .to_mut()
-            .resize(room.edges.end as usize, [0; 2]);
-        self.edges
-            .sides
-            .to_mut()
-            .extend_from_slice(&part.edges.sides);
-        self.clusters.to_mut().extend_from_slice(&part.clusters);
-        let planes = self.planes.clusters.to_mut();
-        planes.extend_from_slice(&part.planes.clusters);
-        self.boxes.to_mut().extend_from_slice(&part.boxes);
-        self.bvh.nodes.to_mut().extend_from_slice(&part.bvh.nodes);
-        self.objects.push(Object {
-            extent: room.begin([0; 4]),
-            room,
-            placed: 0,
-            changed: 0,
-            bounds: EMPTY_BOX,
-            rest: Vec::new(),
-        });
-        self.objects.len() - 1
-    }
-
-    /// Copies what no pose changes, renumbered.
-    fn write_topology(&mut self, part: &World, slot: usize) {
-        let extent = &self.objects[slot].extent;
-        let [vertex, triangle, edge, node] = extent.starts();
-        let from = |start: u32| start as usize;
-        let corners = part.triangles.iter().map(|t| t.map(|v| v + vertex));
-        write(&mut self.triangles, from(triangle), corners);
-        write(
-            &mut self.source,
-            from(triangle),
-            part.source.iter().copied(),
-        );
-        let casting = part.casting.iter().copied();
-        write(&mut self.casting, from(triangle), casting);
-        let ends = part.edges.vertices.iter().map(|e| e.map(|v| v + vertex));
-        write(&mut self.edges.vertices, from(edge), ends);
-        let cluster = from(triangle) / LANES;
-        let sides = part.edges.sides.iter();
-        let sides = sides.map(|sides| sides.map(|side| side.map(|u| u.renumbered(edge))));
-        write(&mut self.edges.sides, cluster, sides);
-        write(&mut self.clusters, cluster, part.clusters.iter().copied());
-        let nodes = part.bvh.nodes.iter().map(|n| Node {
-            first: n.first + triangle,
-            second: if n.is_leaf() { 0 } else { n.second + node },
-            ..*n
-        });
-        write(&mut self.bvh.nodes, from(node), nodes);
     }
 
     /// Planes, boxes and tree from the positions of an object.
@@ -285,13 +247,6 @@ impl World {
     }
 }
 
-/// Writes items one after the other from place `first` on.
-fn write<T: Clone>(array: &mut Array<T>, first: usize, items: impl Iterator<Item = T>) {
-    for (to, item) in array.to_mut()[first..].iter_mut().zip(items) {
-        *to = item;
-    }
-}
-
 fn as_usize(range: &Range<u32>) -> Range<usize> {
     range.start as usize..range.end as usize
 }
@@ -301,7 +256,7 @@ fn placed(rotation: DQuat, pose: &Pose, p: Vec3) -> Vec3 {
     (rotation * p.as_dvec3() + pose.translation).as_vec3() + Vec3::ZERO
 }
 
-fn check(rest: &[Vec3], pose: &Pose) -> Result<(), ObjectError> {
+pub(super) fn check(rest: &[Vec3], pose: &Pose) -> Result<(), ObjectError> {
     let rotation = pose.rotation.normalize();
     let finite = rotation.is_finite()
         && pose.translation.is_finite()

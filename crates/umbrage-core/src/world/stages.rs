@@ -59,17 +59,21 @@ pub struct Joined {
 /// Finds equal positions, and the triangles that have three distinct ones.
 pub fn weld(mesh: &Mesh) -> Welded {
     let (vertex, count) = welding::weld(&mesh.positions);
-    let kept = (0..mesh.triangles.len() as u32)
-        .into_par_iter()
-        .filter(|&t| {
-            let [a, b, c] = mesh.triangles[t as usize].map(|v| vertex[v as usize]);
-            a != b && b != c && c != a
-        });
     Welded {
-        kept: kept.collect(),
+        kept: kept(mesh, &vertex),
         vertex,
         count,
     }
+}
+
+/// The triangles with three distinct corners, where `vertex` says which are one.
+pub(super) fn kept(mesh: &Mesh, vertex: &[u32]) -> Vec<u32> {
+    let triangles = (0..mesh.triangles.len() as u32).into_par_iter();
+    let kept = triangles.filter(|&t| {
+        let [a, b, c] = mesh.triangles[t as usize].map(|v| vertex[v as usize]);
+        a != b && b != c && c != a
+    });
+    kept.collect()
 }
 
 /// Builds the tree by obvhs.

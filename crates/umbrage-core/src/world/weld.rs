@@ -1,7 +1,8 @@
 //! Equal positions to one vertex.
 //!
 //! Takes positions; gives for each the first that equals it. Two positions weld if their f32 bits
-//! are equal, with -0 taken as +0: no tolerance, so welding never moves anything. Positions are
+//! are equal, with -0 taken as +0: no tolerance, so welding never moves anything; whoever wants one
+//! calls [`Mesh::weld_within`] before. Positions are
 //! dealt by hash into parts whose tables fit the cache; what decides is the bits.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};

@@ -1,8 +1,12 @@
 //! Random soups for the tests of this crate.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
-use glam::Vec3;
-use umbrage_core::{Casting, Light, LightShape, Mesh};
+use std::collections::BTreeMap;
+
+use glam::{DQuat, DVec3, Vec3};
+use umbrage_core::volume::{VolumeBuilder, Volumes};
+use umbrage_core::world::{Pose, World};
+use umbrage_core::{Casting, Cull, Culls, Light, LightShape, Mesh};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 pub(crate) struct Random(pub(crate) u64);
@@ -76,6 +80,32 @@ pub(crate) fn grid(n: i32) -> Mesh {
     mesh
 }
 
+/// A closed ring of n x n cells around the y axis, wound outward, with the rule on every triangle:
+/// not convex, so that it hides parts of itself.
+pub(crate) fn torus(n: u32, rule: Casting) -> Mesh {
+    let angle = |i: u32| std::f32::consts::TAU * i as f32 / n as f32;
+    let vertex = |i: u32, j: u32| {
+        let (around, across) = (angle(i), angle(j));
+        let radius = 1.0 + 0.4 * across.cos();
+        Vec3::new(
+            radius * around.cos(),
+            0.4 * across.sin(),
+            radius * around.sin(),
+        )
+    };
+    let mut mesh = Mesh::default();
+    for i in 0..n {
+        mesh.positions.extend((0..n).map(|j| vertex(i, j)));
+        for j in 0..n {
+            let at = |di: u32, dj: u32| (i + di) % n * n + (j + dj) % n;
+            mesh.triangles.push([at(0, 0), at(0, 1), at(1, 1)]);
+            mesh.triangles.push([at(0, 0), at(1, 1), at(1, 0)]);
+        }
+    }
+    mesh.casting = vec![rule; mesh.triangles.len()];
+    mesh
+}
+
 pub(crate) fn point_light(position: Vec3, range: f32) -> Light {
     Light {
         position,
@@ -105,4 +135,55 @@ pub(crate) fn spot(position: Vec3, direction: Vec3, cos_outer: f32, range: f32) 
         range,
         shape,
     }
+}
+
+pub(crate) fn random_pose(r: &mut Random) -> Pose {
+    let axis = r.point().as_dvec3().normalize_or(DVec3::Y);
+    Pose {
+        rotation: DQuat::from_axis_angle(axis, 3.0 * f64::from(r.signed())),
+        translation: 2.0 * r.point().as_dvec3(),
+    }
+}
+
+pub(crate) fn lights(r: &mut Random, count: usize) -> Vec<Light> {
+    let mut lights = vec![sun(Vec3::new(0.3, -1.0, 0.2))];
+    for i in 1..count {
+        let (at, range) = (2.5 * r.point(), 0.4 + 0.3 * r.signed());
+        lights.push(match i % 3 {
+            0 => spot(at, r.point(), 0.7, 2.0 * range),
+            _ => point_light(at, range),
+        });
+    }
+    lights
+}
+
+pub(crate) type Corners = [[u32; 3]; 3];
+
+pub(crate) fn bits(corners: [Vec3; 3]) -> Corners {
+    corners.map(|p| p.to_array().map(f32::to_bits))
+}
+
+/// The chain of a light by where its triangles stand, whatever they are numbered.
+pub(crate) fn chain(
+    world: &World,
+    volumes: &Volumes,
+    light: usize,
+) -> BTreeMap<(Corners, i32), usize> {
+    let mut found = BTreeMap::new();
+    for t in volumes.chain_triangles(light) {
+        let key = (bits(world.corners(t.triangle())), t.coefficient());
+        *found.entry(key).or_default() += 1;
+    }
+    found
+}
+
+/// Without hidden casters, whose choice depends on the tree.
+pub(crate) fn builder() -> VolumeBuilder {
+    VolumeBuilder::new(Culls::EVERY.without(Cull::Hidden))
+}
+
+pub(crate) fn build(world: &World, lights: &[Light]) -> Volumes {
+    let mut volumes = Volumes::default();
+    builder().build(world, lights, |_| true, &mut volumes);
+    volumes
 }

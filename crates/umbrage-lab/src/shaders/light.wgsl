@@ -42,6 +42,24 @@ fn attenuation(d2: f32, range: f32) -> f32 {
     return clamp(1.0 - ratio2 * ratio2, 0.0, 1.0) / max(d2, 1e-4);
 }
 
+// Direction to the light, and what of its power arrives at q from the eye, shadows apart.
+fn arriving(light: Light, q: vec3f) -> vec4f {
+    if light.kind == 2u {
+        return vec4f(-light.direction, 1.0);
+    }
+    let v = (light.position - view.eye) - q;
+    let d2 = dot(v, v);
+    let to_light = v * inverseSqrt(max(d2, 1e-12));
+    var strength = attenuation(d2, light.range);
+    if light.kind == 1u {
+        let c = dot(light.direction, -to_light);
+        let edge = clamp((c - light.cos_outer)
+            / max(light.cos_inner - light.cos_outer, 1e-4), 0.0, 1.0);
+        strength *= edge * edge;
+    }
+    return vec4f(to_light, strength);
+}
+
 @fragment
 fn shade(in: Varying) -> @location(0) vec4f {
     let light = lights[in.light];
@@ -51,20 +69,9 @@ fn shade(in: Varying) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let q = surface_offset(in.position.xy, distance);
-    var to_light = -light.direction;
-    var strength = 1.0;
-    if light.kind != 2u {
-        let v = (light.position - view.eye) - q;
-        let d2 = dot(v, v);
-        to_light = v * inverseSqrt(max(d2, 1e-12));
-        strength = attenuation(d2, light.range);
-        if light.kind == 1u {
-            let c = dot(light.direction, -to_light);
-            let edge = clamp((c - light.cos_outer)
-                / max(light.cos_inner - light.cos_outer, 1e-4), 0.0, 1.0);
-            strength *= edge * edge;
-        }
-    }
+    let arrives = arriving(light, q);
+    let to_light = arrives.xyz;
+    var strength = arrives.w;
     if strength > 0.0 {
         strength *= visibility(in.light, in.position.xy);
     }
@@ -85,6 +92,20 @@ fn shade(in: Varying) -> @location(0) vec4f {
         * pow(max(dot(n, half_way), 0.0), max(shininess, 1.0));
     let reflected = (surface.rgb / 3.14159265 + highlight) * cosine;
     return vec4f(min(light.power * strength * reflected, vec3f(6e4)), 1.0);
+}
+
+// What the light adds in its shadow too: an eighth of what arrives, from everywhere.
+@fragment
+fn ambient(in: Varying) -> @location(0) vec4f {
+    let texel = vec2i(in.position.xy);
+    let distance = textureLoad(distance_texture, texel, 0).x;
+    if distance <= 0.0 {
+        return vec4f(0.0);
+    }
+    let light = lights[in.light];
+    let strength = arriving(light, surface_offset(in.position.xy, distance)).w / 8.0;
+    let albedo = textureLoad(albedo_texture, texel, 0).rgb;
+    return vec4f(min(light.power * strength * albedo / 3.14159265, vec3f(6e4)), 0.0);
 }
 
 // Whether the light reaches the surface at a pixel, with `slack` on its range and its cone.
@@ -110,6 +131,15 @@ fn mark(in: Varying) -> @location(0) vec4f {
         value = 0.0;
     }
     return select(vec4f(0.0), vec4f(value), vec4u(0u, 1u, 2u, 3u) == vec4u(byte));
+}
+
+// The same in integers of eleven bits, red, green and blue, for half floats whose alpha is taken.
+@fragment
+fn mark_wide(in: Varying) -> @location(0) vec4f {
+    let bit = in.light & 31u;
+    let reached = is_reached(lights[in.light], in.position.xy, 1.0 / 4096.0);
+    let value = select(0.0, f32(1u << (bit % 11u)), reached);
+    return select(vec4f(0.0), vec4f(value), vec4u(0u, 1u, 2u, 3u) == vec4u(bit / 11u));
 }
 
 // Lights that reach a pixel, counted.

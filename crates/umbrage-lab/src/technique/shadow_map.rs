@@ -20,7 +20,7 @@ mod unseen;
 
 use std::ops::Range;
 
-use umbrage::{Light, ShadowRenderer};
+use umbrage::{Cull, Light, ShadowRenderer};
 use umbrage_core::world::{Reach, Seen};
 
 use self::casters::{Casters, casters};
@@ -132,6 +132,7 @@ impl ShadowMap {
     /// Marks as stale what is not of these lights in this world.
     fn forget_changes(&mut self, given: &Given<'_>) {
         let changes = self.seen.update(&given.stage.world);
+        let all = changes.fixed || !given.frame.culls.has(Cull::Cache);
         for gone in self
             .lights
             .drain(given.lights.len().min(self.lights.len())..)
@@ -144,7 +145,7 @@ impl ShadowMap {
             let light = &light.light;
             let reach = Reach::new(light);
             let moved = || changes.boxes.iter().any(|at| reach.touches_box(*at));
-            if changes.fixed || kept.light != Some(*light) || moved() {
+            if all || kept.light != Some(*light) || moved() {
                 kept.light = None;
                 kept.drawn = 0;
             }

@@ -65,6 +65,7 @@ pub(super) fn build(
             name,
             mesh: number,
             transform,
+            ..Instance::default()
         });
         progress.advance(triangles - left as u64);
     }

@@ -64,6 +64,7 @@ pub(super) fn build(n: u32, lights: usize, seed: u64, progress: &dyn Progress) -
         name: "field".to_owned(),
         mesh: 0,
         transform,
+        ..Instance::default()
     });
     scene.meshes.push(mesh);
     scene

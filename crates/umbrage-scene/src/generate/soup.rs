@@ -57,6 +57,7 @@ pub(super) fn build(triangles: usize, lights: usize, seed: u64) -> Scene {
         name: "soup".to_owned(),
         mesh: 0,
         transform,
+        ..Instance::default()
     });
     scene.meshes.push(mesh);
     scene

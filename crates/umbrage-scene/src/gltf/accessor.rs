@@ -40,14 +40,21 @@ impl<'a> Elements<'a> {
 }
 
 impl Context<'_> {
-    /// All elements of accessor `index` as vectors of `N` floats; `from` names who asks.
+    /// All elements of accessor `index` as vectors of `N` floats, or as matrices for 16; `from`
+    /// names who asks.
     pub(super) fn vectors<const N: usize>(
         &mut self,
         index: usize,
         from: impl FnOnce() -> String,
     ) -> Result<Vec<[f32; N]>, SceneError> {
         let accessor = self.resolve(&self.root.accessors, index, "accessor", from)?;
-        let expected = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
+        let expected = match N {
+            1 => Type::Scalar,
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            4 => Type::Vec4,
+            _ => Type::Mat4,
+        };
         if accessor.type_ != Checked::Valid(expected) {
             let found = match accessor.type_ {
                 Checked::Valid(found) => format!("{found:?}"),
@@ -85,6 +92,24 @@ impl Context<'_> {
             _ => return Err(self.broken(index, "indices must be unsigned scalars".to_owned())),
         }?;
         Ok(values.into_flattened())
+    }
+
+    /// All elements of accessor `index` as four joint numbers; `from` names who asks.
+    pub(super) fn joints(
+        &mut self,
+        index: usize,
+        from: impl FnOnce() -> String,
+    ) -> Result<Vec<[u16; 4]>, SceneError> {
+        let accessor = self.resolve(&self.root.accessors, index, "accessor", from)?;
+        let four = accessor.type_ == Checked::Valid(Type::Vec4);
+        match self.component(index)? {
+            ComponentType::U8 if four => self.read(index, |v: u8| v.into()),
+            ComponentType::U16 if four => self.read(index, |v: u16| v),
+            _ => Err(self.broken(
+                index,
+                "joints must be four unsigned bytes or shorts".to_owned(),
+            )),
+        }
     }
 
     fn component(&self, index: usize) -> Result<ComponentType, SceneError> {

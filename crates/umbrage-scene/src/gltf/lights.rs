@@ -59,6 +59,7 @@ pub(super) fn light(
         intensity,
         range: bounded,
         kind,
+        node: None,
     })
 }
 
@@ -107,6 +108,7 @@ pub(super) fn camera(
         up,
         fovy_rad: f64::from(fovy),
         near,
+        node: None,
     })
 }
 

@@ -13,7 +13,7 @@ use gltf::json::Index;
 use gltf::json::mesh::{Mode, Primitive};
 use gltf::json::validation::Checked;
 
-use super::{Context, name_or};
+use super::{Context, name_or, weights};
 use crate::{Material, Mesh, Progress, Scene, SceneError};
 
 /// Loads every mesh.
@@ -70,8 +70,15 @@ impl Context<'_> {
     }
 }
 
-/// Position, normal and texture coordinate accessor, which tell the vertices of a primitive.
-type Attributes = (usize, Option<usize>, Option<usize>);
+/// The accessors that tell the vertices of a primitive.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Attributes {
+    position: usize,
+    normal: Option<usize>,
+    uv: Option<usize>,
+    /// Joints and their weights, four a set.
+    influences: Vec<[usize; 2]>,
+}
 
 /// First vertex and number of vertices of attributes that are already in the mesh.
 type Shared = HashMap<Attributes, (u32, u32)>;
@@ -107,15 +114,22 @@ fn append(
     if primitive.targets.is_some() {
         scene.report.ignored_morphs += 1;
     }
-    let attributes = (
+    let influences = |set| {
+        Some([
+            accessor(Semantic::Joints(set))?,
+            accessor(Semantic::Weights(set))?,
+        ])
+    };
+    let attributes = Attributes {
         position,
-        accessor(Semantic::Normals),
-        accessor(Semantic::TexCoords(0)),
-    );
+        normal: accessor(Semantic::Normals),
+        uv: accessor(Semantic::TexCoords(0)),
+        influences: (0..).map_while(influences).collect(),
+    };
     let (base, count) = match shared.get(&attributes) {
         Some(&range) => range,
         None => {
-            let range = vertices(context, scene, mesh, at, attributes)?;
+            let range = vertices(context, scene, mesh, at, &attributes)?;
             shared.insert(attributes, range);
             range
         }
@@ -173,11 +187,11 @@ fn vertices(
     scene: &mut Scene,
     mesh: &mut Mesh,
     at: At,
-    (position, normal, uv): Attributes,
+    attributes: &Attributes,
 ) -> Result<(u32, u32), SceneError> {
     let base = mesh.positions.len();
     let item = context.primitive_item(at);
-    let positions = context.vectors::<3>(position, || item)?;
+    let positions = context.vectors::<3>(attributes.position, || item)?;
     if let Some(vertex) = positions.iter().position(|p| !Vec3::from(*p).is_finite()) {
         let (path, name) = (context.path.clone(), mesh.name.clone());
         let (mesh, primitive) = (at.mesh, at.primitive);
@@ -196,7 +210,7 @@ fn vertices(
     }
     mesh.positions.extend(positions.into_iter().map(Vec3::from));
 
-    if let Some(normals) = optional::<3>(context, scene, at, normal, count)? {
+    if let Some(normals) = optional::<3>(context, scene, at, attributes.normal, count)? {
         mesh.normals.resize(base, Vec3::ZERO);
         mesh.normals.extend(normals.into_iter().map(|n| {
             let unit = Vec3::from(n).try_normalize();
@@ -204,11 +218,21 @@ fn vertices(
             unit.unwrap_or(Vec3::ZERO)
         }));
     }
-    if let Some(uvs) = optional::<2>(context, scene, at, uv, count)? {
+    if let Some(uvs) = optional::<2>(context, scene, at, attributes.uv, count)? {
         mesh.uvs.resize(base, Vec2::ZERO);
         let finite = |uv: [f32; 2]| Some(Vec2::from(uv)).filter(|uv| uv.is_finite());
         mesh.uvs
             .extend(uvs.into_iter().map(|uv| finite(uv).unwrap_or(Vec2::ZERO)));
+    }
+    if !attributes.influences.is_empty() {
+        let item = context.primitive_item(at);
+        let sets = &attributes.influences;
+        if let Some((joints, shares)) = weights::load(context, scene, &item, sets, count)? {
+            mesh.joints.resize(base, weights::UNBOUND.0);
+            mesh.weights.resize(base, weights::UNBOUND.1);
+            mesh.joints.extend(joints);
+            mesh.weights.extend(shares);
+        }
     }
     Ok((base as u32, count as u32))
 }
@@ -262,7 +286,7 @@ fn material(
     }
 }
 
-/// Gives vertices of primitives without normals or texture coordinates the neutral value, if
+/// Gives vertices of primitives without normals, texture coordinates or joints the neutral value, if
 /// other primitives of the mesh have them.
 fn pad(mesh: &mut Mesh) {
     let count = mesh.positions.len();
@@ -271,5 +295,9 @@ fn pad(mesh: &mut Mesh) {
     }
     if !mesh.uvs.is_empty() {
         mesh.uvs.resize(count, Vec2::ZERO);
+    }
+    if !mesh.joints.is_empty() {
+        mesh.joints.resize(count, weights::UNBOUND.0);
+        mesh.weights.resize(count, weights::UNBOUND.1);
     }
 }

@@ -1,7 +1,7 @@
 //! glTF 2.0 files, text or binary.
 //!
 //! Takes a path; gives a [`Scene`] of the default scene's nodes. The stages are rooms: container
-//! -> root -> buffers -> materials and meshes -> nodes. The `gltf` package reads container and
+//! -> root -> buffers -> materials and meshes -> nodes -> rig. The `gltf` package reads container and
 //! JSON. Its wrapper types panic on a reference that leads nowhere, so what follows works on the
 //! plain JSON types and resolves every reference with a check.
 //!
@@ -9,12 +9,16 @@
 
 mod accessor;
 mod buffers;
+mod clips;
 mod container;
 mod lights;
 mod material;
 mod mesh;
 mod nodes;
+mod rigging;
 mod root;
+mod skins;
+mod weights;
 
 use std::path::{Path, PathBuf};
 
@@ -35,7 +39,7 @@ pub(crate) fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneE
     let bytes = source::read(path)?;
     let mut report = LoadReport::default();
     let parts = container::split(&bytes, path, &mut report)?;
-    let root = root::parse(&parts.json, path)?;
+    let root = root::parse(&parts.json, path, &mut report)?;
 
     let buffers = buffers::load(&root, parts.binary.as_deref(), path)?;
     let budget = crate::budget::Budget::new(bytes.len() as u64 + buffers.bytes_read());
@@ -53,7 +57,8 @@ pub(crate) fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneE
     };
     material::load(&mut context, &mut scene, progress)?;
     mesh::load(&mut context, &mut scene, progress)?;
-    nodes::load(&context, &mut scene, progress)?;
+    let tree = nodes::load(&context, &mut scene, progress)?;
+    rigging::load(&mut context, &mut scene, tree, progress)?;
     Ok(scene)
 }
 

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use gltf::json::{self, Root, Value};
 
-use crate::SceneError;
+use crate::{LoadReport, SceneError};
 
 type Object = serde_json::Map<String, Value>;
 
@@ -26,8 +26,8 @@ const KNOWN_EXTENSIONS: [&str; 8] = [
 ];
 
 /// The root of a file that can be loaded.
-pub(super) fn parse(text: &[u8], path: &Path) -> Result<Root, SceneError> {
-    let root = read(text).map_err(|source| SceneError::Json {
+pub(super) fn parse(text: &[u8], path: &Path, report: &mut LoadReport) -> Result<Root, SceneError> {
+    let root = read(text, report).map_err(|source| SceneError::Json {
         path: path.to_owned(),
         source,
     })?;
@@ -46,14 +46,40 @@ pub(super) fn parse(text: &[u8], path: &Path) -> Result<Root, SceneError> {
     Ok(root)
 }
 
-/// Reads the text as it is, else completed; the first error has line and column.
-fn read(text: &[u8]) -> Result<Root, json::Error> {
-    json::deserialize::from_slice(text).or_else(|first: json::Error| {
-        let completed = json::deserialize::from_slice::<Value>(text).map(complete);
-        completed
-            .and_then(json::deserialize::from_value)
-            .map_err(|_| first)
-    })
+/// Reads the text as it is, else completed, else without what moves; the first error has line and
+/// column.
+fn read(text: &[u8], report: &mut LoadReport) -> Result<Root, json::Error> {
+    let first = match json::deserialize::from_slice(text) {
+        Ok(root) => return Ok(root),
+        Err(first) => first,
+    };
+    let completed = json::deserialize::from_slice::<Value>(text).map(complete);
+    let Ok(completed) = completed else {
+        return Err(first);
+    };
+    if let Ok(root) = json::deserialize::from_value(completed.clone()) {
+        return Ok(root);
+    }
+    let (unmoving, skipped) = unmoving(completed);
+    let root = json::deserialize::from_value(unmoving).map_err(|_| first)?;
+    report.skipped_rigs += skipped;
+    report.note(|| "animations and skins left out: some lack what glTF demands".to_owned());
+    Ok(root)
+}
+
+/// Without animations and skins; and how many there were.
+fn unmoving(mut root: Value) -> (Value, u64) {
+    let mut skipped = 0;
+    if let Some(root) = root.as_object_mut() {
+        for unread in ["animations", "skins"] {
+            let items = root.remove(unread);
+            skipped += items.map_or(0, |items| items.as_array().map_or(1, Vec::len) as u64);
+        }
+        for node in list(root, "nodes") {
+            node.remove("skin");
+        }
+    }
+    (root, skipped)
 }
 
 /// Leaves out what is never read, and gives fields that may be absent a value that says so.
@@ -64,8 +90,17 @@ fn complete(mut root: Value) -> Value {
     let Some(root_object) = root.as_object_mut() else {
         return root;
     };
-    for unread in ["animations", "samplers", "skins"] {
-        root_object.remove(unread);
+    root_object.remove("samplers");
+    for animation in list(root_object, "animations") {
+        default(animation, "samplers", Value::Array(vec![]));
+        default(animation, "channels", Value::Array(vec![]));
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            // Without a node they move nothing that is read.
+            channels.retain(|channel| channel.pointer("/target/node").is_some());
+        }
+    }
+    for skin in list(root_object, "skins") {
+        default(skin, "joints", Value::Array(vec![]));
     }
     for scene in list(root_object, "scenes") {
         default(scene, "nodes", Value::Array(vec![]));

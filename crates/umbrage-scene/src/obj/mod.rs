@@ -90,6 +90,7 @@ fn begin(scene: &mut Scene, name: &str) {
         name: name.clone(),
         mesh: index as u32,
         transform: DAffine3::IDENTITY,
+        ..Instance::default()
     });
     scene.meshes.push(Mesh {
         name,

@@ -2,7 +2,9 @@
 //
 // First the depth buffer becomes boxes of visible surface, one a tile. Then each light joins the
 // boxes in its range: a light with none is not drawn, and a quad that cannot meet the hull of the
-// eye and that box crosses no eye ray that ends there. Everything is relative to the eye.
+// eye and that box crosses no eye ray that ends there. Everything is relative to the eye. Quads are
+// taken to be infinite: a finite one is a part of that, and what misses the hull still does. On the
+// z-fail path, which counts behind the surface, all are kept.
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var<storage, read> positions: array<f32>;

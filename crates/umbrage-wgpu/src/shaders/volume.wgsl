@@ -8,6 +8,11 @@
 @group(0) @binding(4) var<storage, read> quads: array<u32>;
 @group(0) @binding(5) var<storage, read> caps: array<u32>;
 @group(0) @binding(6) var<storage, read> lights: array<vec4f>;
+// To which vertices are moved, measured from the light; 0 is infinity. Filled if UMBRAGE_FINITE.
+@group(0) @binding(7) var<storage, read> distances: array<f32>;
+
+// Whether any light's volume may be finite: decided when the pipeline is made.
+override UMBRAGE_FINITE: bool = false;
 
 fn position(vertex: u32) -> vec3f {
     let i = 3u * vertex;
@@ -21,17 +26,36 @@ fn position(vertex: u32) -> vec3f {
 // surface that they lie in.
 const RECEDE: f32 = 1.0 - 1.0 / 2097152.0;
 
-// The vertex itself, or its image at infinity, away from the light.
-fn volume_vertex(vertex: u32, extruded: bool, light: vec4f, recede: f32) -> vec4f {
+// The vertex relative to the eye, or moved away from the light to its distance; one that is
+// farther away stays.
+fn moved(p: vec3f, light: vec4f, distance: f32) -> vec3f {
+    let away = p - light.xyz;
+    // Scaled, so that no square overflows or vanishes.
+    let scale = max(max(abs(away.x), abs(away.y)), abs(away.z));
+    let direction = away / scale;
+    let size = length(direction);
+    let far = light.xyz - view.eye + direction * (distance / size);
+    return select(far, p - view.eye, scale * size >= distance);
+}
+
+// The vertex itself, or its image away from the light: at the light's distance, or at infinity.
+fn volume_vertex(vertex: u32, extruded: bool, light: u32, recede: f32) -> vec4f {
     let p = position(vertex);
     if extruded {
-        return umbrage_clip(view, p * light.w - light.xyz, 0.0);
+        let at = lights[light];
+        if UMBRAGE_FINITE {
+            let distance = distances[light];
+            if distance > 0.0 {
+                return umbrage_clip(view, moved(p, at, distance), recede);
+            }
+        }
+        return umbrage_clip(view, p * at.w - at.xyz, 0.0);
     }
     return umbrage_clip(view, p - view.eye, recede);
 }
 
 // Two triangles a quad: (a, a', b) and (b, a', b'), a' extruded; front faces look outward.
-fn side_corner(ends: vec2u, index: u32, light: vec4f) -> vec4f {
+fn side_corner(ends: vec2u, index: u32, light: u32) -> vec4f {
     let corner = index % 6u;
     let at_end = corner == 2u || corner == 3u || corner == 5u;
     let extruded = corner == 1u || corner >= 4u;
@@ -49,7 +73,7 @@ fn quad_ends(quad: u32) -> vec2u {
 fn side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
 {
-    return side_corner(quad_ends(index / 6u), index, lights[light]);
+    return side_corner(quad_ends(index / 6u), index, light);
 }
 
 // The z-fail path's sides: those that the eye is on are left out.
@@ -61,7 +85,7 @@ fn zfail_side(@builtin(vertex_index) index: u32, @builtin(instance_index) light:
     if eye_on_side(position(ends.x), position(ends.y), lights[light]) {
         return UMBRAGE_NOWHERE;
     }
-    return side_corner(ends, index, lights[light]);
+    return side_corner(ends, index, light);
 }
 
 // Whether the eye is on the side that the edge a-b casts, not just in its plane.
@@ -85,10 +109,21 @@ fn eye_on_side(a: vec3f, b: vec3f, light: vec4f) -> bool {
         && dot(normalize(outward), -qa) >= -slack;
 }
 
+// A corner of a cap that ends somewhere, relative to the eye.
+fn cap_corner(vertex: u32, extruded: bool, light: u32) -> vec3f {
+    let p = position(vertex);
+    if UMBRAGE_FINITE {
+        if extruded {
+            return moved(p, lights[light], distances[light]);
+        }
+    }
+    return p - view.eye;
+}
+
 // The light cap with the triangle's own vertex order, then the dark cap with the other winding. A
 // triangle taken reversed keeps its order and is drawn by a pipeline that counts the other way
 // round: rasterised in another order, the cap's depth could differ from that of the visible
-// triangle it lies in. A light cap in whose plane the eye is, is left out.
+// triangle it lies in. A cap in whose plane the eye is, is left out; at infinity it is in none.
 @vertex
 fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
@@ -97,16 +132,17 @@ fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     let extruded = corner >= 3u;
     let k = select(corner, (6u - corner) % 3u, extruded);
     let first = 3u * (caps[index / 6u] >> 1u);
-    if !extruded {
-        let a = position(triangles[first]) - view.eye;
-        let b = position(triangles[first + 1u]) - view.eye;
-        let c = position(triangles[first + 2u]) - view.eye;
+    let is_infinite = extruded && !(UMBRAGE_FINITE && distances[light] > 0.0);
+    if !is_infinite {
+        let a = cap_corner(triangles[first], extruded, light);
+        let b = cap_corner(triangles[first + 1u], extruded, light);
+        let c = cap_corner(triangles[first + 2u], extruded, light);
         let size = max(max(length(a), length(b)), length(c));
         if umbrage_eye_in_plane(cross(b - a, c - a), a, size) {
             return UMBRAGE_NOWHERE;
         }
     }
-    return volume_vertex(triangles[first + k], extruded, lights[light], 1.0);
+    return volume_vertex(triangles[first + k], extruded, light, 1.0);
 }
 
 // All of the scissor, to leave it clean for the next light.

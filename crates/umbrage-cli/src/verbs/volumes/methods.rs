@@ -27,7 +27,10 @@ pub(super) fn all(world: &World) -> Vec<Box<dyn Method>> {
         Box::new(CounterMethod::default()),
         Box::new(CutsMethod::default()),
         Box::new(PlainMethod::default()),
-        Box::new(Crow::new(world)),
+        Box::new(CrowMethod {
+            crow: Crow::new(world),
+            coefficients: vec![0; world.triangles.len()],
+        }),
         Box::new(BruteMethod),
     ]
 }
@@ -122,16 +125,22 @@ impl Method for BruteMethod {
     }
 }
 
-impl Method for Crow {
+struct CrowMethod {
+    crow: Crow,
+    coefficients: Vec<i8>,
+}
+
+impl Method for CrowMethod {
     fn name(&self) -> &'static str {
         "crow"
     }
 
     fn quads(&mut self, world: &World, _: &Light, chain: &mut Vec<Chain>, quads: &mut Vec<Quad>) {
-        self.silhouette(world, chain, quads);
+        self.crow
+            .silhouette(world, chain, &mut self.coefficients, quads);
     }
 
-    fn adjacency_bytes(&self, _: &World) -> usize {
-        self.bytes()
+    fn adjacency_bytes(&self, world: &World) -> usize {
+        self.crow.bytes(world)
     }
 }

@@ -40,7 +40,7 @@ pub enum SavedWorldError {
     },
     /// Made from another mesh.
     #[error(
-        "stale: made from other triangles, casting rules or origin; \
+        "stale: made from other triangles, casting rules, origin or welding; \
          build the world and save it again"
     )]
     Stale,

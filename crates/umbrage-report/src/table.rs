@@ -4,18 +4,19 @@ use std::fmt;
 
 /// Rows of cells; the first column is flush left, all others flush right.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Table {
+pub struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    pub(crate) fn row<C: Into<String>>(&mut self, cells: impl IntoIterator<Item = C>) -> &mut Self {
+    /// Adds a row; rows may differ in length.
+    pub fn row<C: Into<String>>(&mut self, cells: impl IntoIterator<Item = C>) -> &mut Self {
         self.rows.push(cells.into_iter().map(Into::into).collect());
         self
     }
 
     /// A label and a count, with thin groups of three digits.
-    pub(crate) fn count(&mut self, label: &str, count: u64) -> &mut Self {
+    pub fn count(&mut self, label: &str, count: u64) -> &mut Self {
         self.row([label.to_owned(), grouped(count)])
     }
 }
@@ -48,7 +49,7 @@ impl fmt::Display for Table {
 }
 
 /// 1234567 as "1,234,567".
-pub(crate) fn grouped(count: u64) -> String {
+pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {

@@ -1,0 +1,111 @@
+//! One method in one view: timed, judged, pictured.
+
+use umbrage_core::View;
+use umbrage_core::frame::LightPath;
+use umbrage_lab::gpu::GpuError;
+use umbrage_lab::lab::{Lab, Method};
+use umbrage_lab::picture::Lit;
+use umbrage_lab::stage::{Stage, StageLight};
+use umbrage_report::bench::{BenchRow, Difference};
+use umbrage_truth::{ErrorMap, Oracle, Verdicts};
+
+use super::interrupt::Interrupt;
+
+/// What is to be measured.
+pub(super) struct Task<'a> {
+    pub(super) stage: &'a Stage,
+    pub(super) lights: &'a [StageLight],
+    pub(super) view: &'a View,
+    pub(super) method: Method,
+    /// Frames timed, after one that warms up.
+    pub(super) repeat: usize,
+    /// Seconds after which no further frame is begun, if one was timed.
+    pub(super) limit: f32,
+    pub(super) interrupt: &'a Interrupt,
+}
+
+/// What the oracle knows of the view.
+pub(super) struct Judge<'a> {
+    pub(super) oracle: &'a Oracle,
+    pub(super) verdicts: Verdicts,
+}
+
+/// Measures a row; a method that fails gives one that says why.
+pub(super) fn measure(
+    task: &Task<'_>,
+    lab: &mut Lab,
+    judge: Option<&mut Judge<'_>>,
+    place: (&str, &str, [u32; 2]),
+) -> BenchRow {
+    let mut row = BenchRow::new(&task.method.name(), place);
+    row.exact = task.method.is_exact();
+    if let Err(why) = fill(task, lab, judge, &mut row) {
+        row.failed = Some(why.to_string());
+    }
+    row
+}
+
+fn fill(
+    task: &Task<'_>,
+    lab: &mut Lab,
+    judge: Option<&mut Judge<'_>>,
+    row: &mut BenchRow,
+) -> Result<(), GpuError> {
+    let Task {
+        stage,
+        lights,
+        view,
+        method,
+        ..
+    } = *task;
+    let lit = lab.render_while(stage, lights, view, method, |frames| {
+        let spent: f64 = frames.iter().map(|frame| frame.frame / 1e3).sum();
+        let late = frames.len() > 1 && (spent > f64::from(task.limit) || task.interrupt.came());
+        frames.len() <= task.repeat && !late
+    })?;
+    let timed: Vec<f64> = lab.frames[1..].iter().map(|frame| frame.frame).collect();
+    row.set_frame_times(&timed);
+    row.build_ms = method.recipe().map(|_| lab.times.volumes_first);
+    row.gpu_ms = lab.gpu().timestamp_ns.map(|_| lab.times.gpu());
+    let volumes = 4 * (lab.volumes.quads.len() + lab.plan.caps.len()) as u64;
+    row.gpu_bytes = Some(volumes + lab.held.gpu_bytes);
+    row.note = lab.held.note.clone();
+    if timed.len() < task.repeat {
+        let short = format!("{} of {} frames, for time", timed.len(), task.repeat);
+        row.note = match row.note.is_empty() {
+            true => short,
+            false => format!("{}; {short}", row.note),
+        };
+    }
+    let Some(Judge { oracle, verdicts }) = judge else {
+        return Ok(());
+    };
+    let mask = lab.mask(stage, lights, view)?;
+    let skipped: Vec<bool> = (0..lights.len())
+        .map(|light| matches!(lab.path(light), LightPath::Skipped(_)))
+        .collect();
+    let found = verdicts.judge(oracle, &mask, &skipped);
+    row.set_errors(found.wrong, found.ambiguous, found.samples);
+    let map = verdicts.error_map(&mask, &skipped);
+    row.difference = difference(&lit, &map);
+    Ok(())
+}
+
+fn difference(lit: &Lit, map: &ErrorMap) -> Option<Difference> {
+    let grey: Vec<f32> = lit
+        .to_rgb8()
+        .chunks_exact(3)
+        .map(|rgb| {
+            let [r, g, b] = [rgb[0], rgb[1], rgb[2]].map(f32::from);
+            (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255.0
+        })
+        .collect();
+    let wide = |counts: &[u16]| {
+        counts
+            .iter()
+            .map(|&count| u32::from(count))
+            .collect::<Vec<_>>()
+    };
+    // All three have one value a pixel of this view.
+    Difference::new(map.size, &grey, &wide(&map.wrong), &wide(&map.ambiguous)).ok()
+}

@@ -1,0 +1,80 @@
+// Brennan's static buffer: the corners of triangles that face away from the light go to infinity.
+// A vertex index is three times a triangle's number plus its corner; the instance index is the
+// light's number.
+
+@group(0) @binding(0) var<uniform> view: View;
+struct SkinnedCorner {
+    normal: vec3f,
+    joints: vec4u,
+    weights: vec4f,
+}
+
+// The first corner that has an entry in `skin`.
+@group(0) @binding(1) var<uniform> first_skinned: vec4u;
+@group(0) @binding(2) var<storage, read> positions: array<f32>;
+@group(0) @binding(3) var<storage, read> triangles: array<u32>;
+// Position and 1, or direction towards the light and 0.
+@group(0) @binding(4) var<storage, read> lights: array<vec4f>;
+@group(0) @binding(5) var<storage, read> skin: array<SkinnedCorner>;
+// What each joint does to normals.
+@group(0) @binding(6) var<storage, read> joints: array<mat3x3f>;
+
+// 0: from the posed corners. 1: from rest, by the weights of the face. 2: by those of the vertex.
+override normals: u32 = 0u;
+
+fn position(vertex: u32) -> vec3f {
+    let i = 3u * vertex;
+    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
+}
+
+// The corner, or its image at infinity. `recede` as in the library's volumes: sides run a little
+// below the surface of the triangle whose edge they hang from, caps must tie with it.
+fn extruded(corner: u32, number: u32, recede: f32) -> vec4f {
+    let light = lights[number];
+    let first = corner / 3u * 3u;
+    let a = position(triangles[first]);
+    let b = position(triangles[first + 1u]);
+    let c = position(triangles[first + 2u]);
+    let p = position(triangles[corner]);
+    // The same for all three corners, to the last bit: a triangle goes or stays as a whole.
+    var normal = cross(b - a, c - a);
+    var on_plane = a;
+    if normals > 0u && corner >= first_skinned.x {
+        let bound = skin[corner - first_skinned.x];
+        if any(bound.normal != vec3f(0.0)) {
+            normal = vec3f(0.0);
+            for (var i = 0u; i < 4u; i++) {
+                normal += bound.weights[i] * (joints[bound.joints[i]] * bound.normal);
+            }
+            // The article's own, corner by corner: normals and places differ, and so may answers.
+            on_plane = select(a, p, normals == 2u);
+        }
+    }
+    if dot(normal, light.xyz - on_plane * light.w) > 0.0 {
+        return umbrage_clip(view, p - view.eye, recede);
+    }
+    return umbrage_clip(view, p * light.w - light.xyz, 0.0);
+}
+
+@vertex
+fn cap(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
+    -> @builtin(position) @invariant vec4f
+{
+    return extruded(corner, number, 1.0);
+}
+
+@vertex
+fn side(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
+    -> @builtin(position) @invariant vec4f
+{
+    return extruded(corner, number, 1.0 - 1.0 / 2097152.0);
+}
+
+// All of the scissor, to leave the stencil clean for the next light.
+@vertex
+fn everywhere(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(f32((index << 1u) & 2u) * 2.0 - 1.0, f32(index & 2u) * 2.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn nothing() {}

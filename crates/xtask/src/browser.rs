@@ -1,0 +1,32 @@
+//! A browser for the tests of HTML reports: Chromium, headless.
+//!
+//! Without one those tests are skipped, each saying so, and everything else still holds; so a
+//! browser that cannot be installed stops nothing.
+
+#[path = "../../umbrage-report/tests/browser/find.rs"]
+mod places;
+
+use crate::apt::Apt;
+use places::find;
+
+/// What to do where none can be installed for the user.
+const ADVICE: &str = "\
+No Chromium here: the tests that open an HTML report in a browser will be skipped.
+  Debian           apt-get install chromium
+  Fedora, Arch     dnf install chromium, pacman -S chromium
+  elsewhere        Chrome, Chromium or Edge on the PATH, or its path in CHROMIUM";
+
+/// Installs Chromium unless a browser of its kind is there; prints what to do otherwise.
+pub(crate) fn ensure() {
+    if find().is_some() {
+        return;
+    }
+    if let Some(apt) = Apt::here() {
+        println!("No Chromium here: installing it through apt.");
+        if apt.install(&["chromium"]) && find().is_some() {
+            println!("Installed chromium.");
+            return;
+        }
+    }
+    eprintln!("{ADVICE}");
+}
