@@ -3,33 +3,17 @@
 
 mod common;
 
-use common::room::CUBOID_FACES;
+use common::room::crate_of;
 use common::{Random, Site, by_profile, lab, skipped};
 use glam::{DQuat, DVec3, Vec3};
+use umbrage_core::Light;
 use umbrage_core::world::{ObjectId, Pose, Reach};
-use umbrage_core::{Casting, Light, Mesh};
 use umbrage_lab::Uploaded;
 use umbrage_lab::lab::Method;
 use umbrage_lab::stage::Casters;
 use umbrage_truth::{JudgeOptions, Oracle, judge};
 
 const SIZE: [u32; 2] = [200, 120];
-
-/// A box with its front outside.
-fn crate_of(half: Vec3) -> Mesh {
-    let corner = |i: u32| {
-        let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-        half * Vec3::new(sign(0), sign(1), sign(2))
-    };
-    let triangles: Vec<[u32; 3]> = (CUBOID_FACES.into_iter())
-        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
-    Mesh {
-        positions: (0..8).map(corner).collect(),
-        casting: vec![Casting::Front; triangles.len()],
-        triangles,
-    }
-}
 
 fn pose(random: &mut Random, low: Vec3, high: Vec3) -> Pose {
     let turn = f64::from(random.between(0.0, 6.0));

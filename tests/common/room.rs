@@ -2,7 +2,7 @@
 //! exact in f32, so a test can stand exactly on a plane.
 
 use glam::Vec3;
-use umbrage_core::{Light, LightShape};
+use umbrage_core::{Casting, Light, LightShape};
 use umbrage_lab::stage::StageLight;
 use umbrage_scene::{Mesh, Scene};
 
@@ -107,6 +107,22 @@ fn cuboid(mesh: &mut Mesh, low: Vec3, high: Vec3, inwards: bool) {
     for [a, b, c, d] in CUBOID_FACES {
         let corners = if inwards { [d, c, b, a] } else { [a, b, c, d] };
         quad(mesh, corners.map(p), 0);
+    }
+}
+
+/// A box with its front outside.
+pub(crate) fn crate_of(half: Vec3) -> umbrage_core::Mesh {
+    let corner = |i: u32| {
+        let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        half * Vec3::new(sign(0), sign(1), sign(2))
+    };
+    let triangles: Vec<[u32; 3]> = (CUBOID_FACES.into_iter())
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .collect();
+    umbrage_core::Mesh {
+        positions: (0..8).map(corner).collect(),
+        casting: vec![Casting::Front; triangles.len()],
+        triangles,
     }
 }
 

@@ -49,6 +49,14 @@ pub enum GpuError {
         /// Device limit.
         limit: u32,
     },
+    /// The device has no memory left.
+    #[error("no GPU memory for {what} of {bytes} bytes: choose a smaller one, or free some")]
+    NoMemory {
+        /// What was to be made.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
+    },
     /// Reading results back failed.
     #[error("the device was lost while a frame was read back: {0}")]
     Readback(String),

@@ -291,7 +291,10 @@ impl Lab {
         let Rendering { run, hdr, .. } = rendering;
         let timed = usize::from(self.frames.len() > 1);
         self.times = medians(&self.frames[timed.min(self.frames.len())..]);
-        self.times.volumes_first = self.frames.first().map_or(0.0, |first| first.volumes);
+        if let Some(first) = self.frames.first() {
+            self.times.volumes_first = first.volumes;
+            self.times.frame_first = first.frame;
+        }
         self.calls = read_calls(&self.gpu, &run.shadows)?;
         self.held = run.technique.report();
         let light = read_texture(&self.gpu, hdr)?;

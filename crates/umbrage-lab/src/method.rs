@@ -34,6 +34,13 @@ pub enum Method {
     },
     /// A static buffer extruded by the vertex shader, for closed meshes (Brennan 2002).
     Extrude(Normals),
+    /// Depth as each light sees it, compared: a cube, or one face for spots and directional lights.
+    ShadowMap {
+        /// Width and height of a face: [`MAP_TEXELS`], in steps of [`MAP_STEP`].
+        texels: u32,
+    },
+    /// Any-hit rays over the world's BVH, in a compute shader.
+    RayTrace,
     /// No shadows: the floor that every frame time is compared with.
     None,
 }
@@ -103,17 +110,27 @@ impl Divisor {
     }
 }
 
+/// Smallest and largest shadow map, in texels a side.
+pub const MAP_TEXELS: std::ops::RangeInclusive<u32> = 256..=4096;
+
+/// Shadow maps have a multiple of so many texels a side.
+pub const MAP_STEP: u32 = 64;
+
 /// A name that is no method's.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("no method is called {name:?}; there are: {}", Method::names().join(", "))]
+#[error(
+    "no method is called {name:?}; there are: {}; maps of other sizes have 256 to 4096 texels a \
+     side, in steps of 64",
+    Method::names().join(", ")
+)]
 pub struct UnknownMethod {
     /// What was asked for.
     pub name: String,
 }
 
 impl Method {
-    /// All of them, in the order of `--help`; maps with one example.
-    pub const ALL: [Method; 21] = [
+    /// All of them, in the order of `--help`; maps of the usual sizes.
+    pub const ALL: [Method; 27] = [
         Method::Counter,
         Method::CounterZFail,
         Method::CounterFinite(Distance::Corrected),
@@ -134,6 +151,12 @@ impl Method {
         Method::Extrude(Normals::Neighbours),
         Method::Extrude(Normals::FaceWeights),
         Method::Extrude(Normals::VertexWeights),
+        Method::ShadowMap { texels: 256 },
+        Method::ShadowMap { texels: 512 },
+        Method::ShadowMap { texels: 1024 },
+        Method::ShadowMap { texels: 2048 },
+        Method::ShadowMap { texels: 4096 },
+        Method::RayTrace,
         Method::None,
     ];
 
@@ -173,6 +196,8 @@ impl Method {
             Method::Extrude(Normals::Neighbours) => "extrude".into(),
             Method::Extrude(Normals::FaceWeights) => "extrude-face-weights".into(),
             Method::Extrude(Normals::VertexWeights) => "extrude-vertex-weights".into(),
+            Method::ShadowMap { texels } => format!("shadowmap-{texels}").into(),
+            Method::RayTrace => "raytrace".into(),
             Method::None => "none".into(),
         }
     }
@@ -181,12 +206,13 @@ impl Method {
     /// only where it can represent the layers: see [`Method::layers`].
     pub fn is_exact(self) -> bool {
         match self {
-            Method::Counter | Method::CounterZFail | Method::Brute => true,
+            Method::Counter | Method::CounterZFail | Method::Brute | Method::RayTrace => true,
             Method::CounterFinite(distance) => distance == Distance::Corrected,
             Method::Crow
             | Method::Mask(_)
             | Method::LowResolution { .. }
             | Method::Extrude(_)
+            | Method::ShadowMap { .. }
             | Method::None => false,
         }
     }
@@ -232,7 +258,7 @@ impl Method {
                 construction: Construction::Crow,
                 ..counter
             }),
-            Method::Extrude(_) | Method::None => None,
+            Method::Extrude(_) | Method::ShadowMap { .. } | Method::RayTrace | Method::None => None,
         }
     }
 }
@@ -263,6 +289,13 @@ impl FromStr for Method {
     type Err = UnknownMethod;
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
+        let texels = name.strip_prefix("shadowmap-").map(str::parse);
+        if let Some(Ok(texels)) = texels
+            && MAP_TEXELS.contains(&texels)
+            && texels % MAP_STEP == 0
+        {
+            return Ok(Method::ShadowMap { texels });
+        }
         let mut all = Self::ALL.into_iter();
         // "counter-half" says "half" in full.
         let short = name.strip_prefix("counter-");
@@ -281,6 +314,18 @@ mod tests {
     fn names_lead_back_to_their_methods() {
         for method in Method::ALL {
             assert_eq!(method.name().parse(), Ok(method));
+        }
+        assert_eq!(
+            "shadowmap-1536".parse(),
+            Ok(Method::ShadowMap { texels: 1536 })
+        );
+        for other in [
+            "shadowmap-",
+            "shadowmap-100",
+            "shadowmap-8192",
+            "shadowmap-1000",
+        ] {
+            assert!(other.parse::<Method>().is_err(), "{other}");
         }
         let refused = "stencil".parse::<Method>().unwrap_err().to_string();
         assert!(refused.contains("counter-zfail"), "{refused}");

@@ -4,8 +4,11 @@
 //! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
+mod binding;
 mod extrude;
 mod mask;
+mod ray_trace;
+mod shadow_map;
 mod stencil;
 mod unshadowed;
 
@@ -25,6 +28,8 @@ use crate::stage::{Stage, StageLight};
 use extrude::Extrude;
 pub(crate) use mask::Overflow;
 use mask::{InFrame, InLayers};
+use ray_trace::RayTrace;
+use shadow_map::ShadowMap;
 use stencil::Stencil;
 use unshadowed::Unshadowed;
 
@@ -108,6 +113,8 @@ pub(crate) fn technique(
             Box::new(InLayers::new(gpu, shadows, draw, of, application, pixels)?)
         }
         Method::Extrude(normals) => Box::new(Extrude::new(gpu, shadows, draw, normals)),
+        Method::ShadowMap { texels } => Box::new(ShadowMap::new(gpu, shadows, draw, texels)?),
+        Method::RayTrace => Box::new(RayTrace::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })
 }

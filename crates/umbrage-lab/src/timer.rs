@@ -26,6 +26,8 @@ pub struct StageTimes {
     pub gpu_lights: f64,
     /// From start to the GPU's end.
     pub frame: f64,
+    /// The same of the first frame, in which all that is kept is made.
+    pub frame_first: f64,
 }
 
 impl StageTimes {
@@ -134,5 +136,6 @@ pub(crate) fn medians(all: &[StageTimes]) -> StageTimes {
         gpu_receivers: median(|t| t.gpu_receivers),
         gpu_lights: median(|t| t.gpu_lights),
         frame: median(|t| t.frame),
+        frame_first: 0.0,
     }
 }

@@ -405,7 +405,8 @@ fn bind_group_layout(device: &Device) -> BindGroupLayout {
 }
 
 fn light_layout(device: &Device) -> BindGroupLayout {
-    uniform_and_storage(device, "umbrage light", ShaderStages::VERTEX, 1)
+    let stages = ShaderStages::VERTEX | ShaderStages::COMPUTE;
+    uniform_and_storage(device, "umbrage light", stages, 1)
 }
 
 /// A uniform buffer, then read-only storage buffers.

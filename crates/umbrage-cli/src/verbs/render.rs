@@ -99,6 +99,7 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
         ("gpu_surface", times.gpu_surface),
         ("gpu_receivers", times.gpu_receivers),
         ("gpu_lights", times.gpu_lights),
+        ("frame_first", times.frame_first),
     ];
     RenderReport {
         scene: setting.stage.scene.name.clone(),

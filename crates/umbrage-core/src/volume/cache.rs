@@ -11,7 +11,7 @@ use super::store::Block;
 use super::{Chain, Construction, LightVolume, Volumes};
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
-use crate::world::{EMPTY_BOX, Reach, World};
+use crate::world::{Reach, World};
 
 /// What one light was built from, and where it lies.
 #[derive(Clone, Debug, Default)]
@@ -56,15 +56,6 @@ pub(super) struct Job {
     pub(super) hide: bool,
 }
 
-/// The world as it was at the last build.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
-    stamp: u64,
-    fixed: u64,
-    /// When each object had last changed, and its box.
-    objects: Vec<(u64, [glam::Vec3; 2])>,
-}
-
 impl Key {
     fn is_stale(&self) -> bool {
         self.fixed == Fixed::Stale || !self.objects
@@ -86,12 +77,13 @@ impl Volumes {
         }
         self.keys.resize_with(lights.len(), Key::default);
         self.lights.resize_with(lights.len(), LightVolume::default);
+        let changes = self.world.update(world);
         let all = !culls.has(Cull::Cache)
             || culls.has(Cull::Hidden) != self.culls.has(Cull::Hidden)
             || self.construction != construction
-            || self.world.fixed != world.fixed_stamp;
+            || changes.fixed;
         (self.culls, self.construction) = (culls, construction);
-        let moved = self.world.update(world);
+        let moved = changes.boxes;
         for ((key, volume), light) in self.keys.iter_mut().zip(&mut self.lights).zip(lights) {
             if all || key.light != Some(*light) {
                 (key.fixed, key.objects) = (Fixed::Stale, false);
@@ -185,27 +177,5 @@ impl Volumes {
                 }
             }
         }
-    }
-}
-
-impl Seen {
-    /// Takes in the world as it is; gives the boxes of what moved, before and after.
-    fn update(&mut self, world: &World) -> Vec<[glam::Vec3; 2]> {
-        let mut moved = Vec::new();
-        if self.stamp == world.stamp {
-            return moved;
-        }
-        // A world of fewer objects than the last, as of an undo, has lost those.
-        let common = world.objects.len().min(self.objects.len());
-        moved.extend(self.objects.drain(common..).map(|(_, bounds)| bounds));
-        self.objects.resize(world.objects.len(), (0, EMPTY_BOX));
-        for (seen, object) in self.objects.iter_mut().zip(&world.objects) {
-            if seen.0 != object.changed {
-                moved.extend([seen.1, object.bounds]);
-                *seen = (object.changed, object.bounds);
-            }
-        }
-        (self.stamp, self.fixed) = (world.stamp, world.fixed_stamp);
-        moved
     }
 }

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::cache::{Key, Seen};
+use super::cache::Key;
 use super::store::{Store, Version};
 use super::{Chain, ChainTriangle, ClosureFault, Construction, Quad, RangePrefix, check_closed};
 use crate::cull::Culls;
-use crate::world::World;
+use crate::world::{Seen, World};
 
 /// One light's share of [`Volumes`].
 #[derive(Clone, Debug, Default, PartialEq)]

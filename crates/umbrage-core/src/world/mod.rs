@@ -17,6 +17,7 @@ mod objects;
 mod planes;
 mod query;
 mod save;
+mod seen;
 mod slots;
 mod snap;
 pub mod stages;
@@ -40,6 +41,7 @@ pub use objects::{Object, ObjectError, ObjectId, Pose};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Layer, Reach, query};
 pub use save::SavedWorldError;
+pub use seen::{Changes, Seen};
 pub use subset::{Members, Subset};
 
 pub(crate) use objects::EMPTY_BOX;
