@@ -232,7 +232,8 @@ impl BenchArgs {
 }
 
 /// One of each kind.
-const DEFAULT_METHODS: &str = "none,counter,counter-zfail";
+const DEFAULT_METHODS: &str = "none,counter,counter-zfail,counter-finite,brute,crow,mask-alpha,\
+                               half,quarter,shadowmap-256,shadowmap-512,shadowmap-1024,raytrace";
 
 const BENCH_EXAMPLES: &str = "\
 Every scene is seen by every camera at every size, and drawn there by every method. Errors are
@@ -328,7 +329,7 @@ pub(crate) struct Common {
     ///
     /// shadowmap-N: cubes of N texels a side, 256 to 4096 in steps of 64, two by two texels filtered;
     /// one map for spots up to 80 degrees and for directional lights. raytrace: rays over the BVH,
-    /// in a compute shader
+    /// in a compute shader. oracle: the exact ray cast that the others are judged by, on the CPU
     #[arg(
         long,
         help_heading = "Run",

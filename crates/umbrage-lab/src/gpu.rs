@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 use umbrage::RenderError;
+use umbrage_truth::NearClip;
 
 /// Which adapter to use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -57,6 +58,14 @@ pub enum GpuError {
         /// Its size.
         bytes: u64,
     },
+    /// An array of textures would pass a device limit.
+    #[error("{lights} lights are more than the {limit} that a mask on this device can hold")]
+    TooManyLights {
+        /// Lights of the scene.
+        lights: usize,
+        /// What fits.
+        limit: usize,
+    },
     /// Reading results back failed.
     #[error("the device was lost while a frame was read back: {0}")]
     Readback(String),
@@ -99,6 +108,14 @@ pub struct Gpu {
 }
 
 impl Gpu {
+    /// What happens to surfaces before the near plane.
+    pub fn near_clip(&self) -> NearClip {
+        match self.depth_clamp {
+            true => NearClip::Clamped,
+            false => NearClip::Clipped,
+        }
+    }
+
     /// Finds an adapter and opens a device with the limits the adapter has. Errors that the
     /// validation layer reports later are fatal: the lab must never cause one.
     pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {

@@ -416,11 +416,7 @@ impl Lab {
 
     /// What happens to surfaces before the near plane on this device.
     pub fn near_clip(&self) -> NearClip {
-        if self.gpu.depth_clamp {
-            NearClip::Clamped
-        } else {
-            NearClip::Clipped
-        }
+        self.gpu.near_clip()
     }
 
     /// How a light was drawn in the last frame: as planned, or not at all because it reaches no

@@ -41,6 +41,8 @@ pub enum Method {
     },
     /// Any-hit rays over the world's BVH, in a compute shader.
     RayTrace,
+    /// The oracle's verdicts, drawn.
+    Oracle,
     /// No shadows: the floor that every frame time is compared with.
     None,
 }
@@ -130,7 +132,7 @@ pub struct UnknownMethod {
 
 impl Method {
     /// All of them, in the order of `--help`; maps of the usual sizes.
-    pub const ALL: [Method; 27] = [
+    pub const ALL: [Method; 28] = [
         Method::Counter,
         Method::CounterZFail,
         Method::CounterFinite(Distance::Corrected),
@@ -157,6 +159,7 @@ impl Method {
         Method::ShadowMap { texels: 2048 },
         Method::ShadowMap { texels: 4096 },
         Method::RayTrace,
+        Method::Oracle,
         Method::None,
     ];
 
@@ -198,6 +201,7 @@ impl Method {
             Method::Extrude(Normals::VertexWeights) => "extrude-vertex-weights".into(),
             Method::ShadowMap { texels } => format!("shadowmap-{texels}").into(),
             Method::RayTrace => "raytrace".into(),
+            Method::Oracle => "oracle".into(),
             Method::None => "none".into(),
         }
     }
@@ -206,7 +210,11 @@ impl Method {
     /// only where it can represent the layers: see [`Method::layers`].
     pub fn is_exact(self) -> bool {
         match self {
-            Method::Counter | Method::CounterZFail | Method::Brute | Method::RayTrace => true,
+            Method::Counter
+            | Method::CounterZFail
+            | Method::Brute
+            | Method::RayTrace
+            | Method::Oracle => true,
             Method::CounterFinite(distance) => distance == Distance::Corrected,
             Method::Crow
             | Method::Mask(_)
@@ -258,7 +266,11 @@ impl Method {
                 construction: Construction::Crow,
                 ..counter
             }),
-            Method::Extrude(_) | Method::ShadowMap { .. } | Method::RayTrace | Method::None => None,
+            Method::Extrude(_)
+            | Method::ShadowMap { .. }
+            | Method::RayTrace
+            | Method::Oracle
+            | Method::None => None,
         }
     }
 }

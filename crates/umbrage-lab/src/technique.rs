@@ -7,6 +7,7 @@
 mod binding;
 mod extrude;
 mod mask;
+mod oracle;
 mod ray_trace;
 mod shadow_map;
 mod stencil;
@@ -28,6 +29,7 @@ use crate::stage::{Stage, StageLight};
 use extrude::Extrude;
 pub(crate) use mask::Overflow;
 use mask::{InFrame, InLayers};
+use oracle::OracleMask;
 use ray_trace::RayTrace;
 use shadow_map::ShadowMap;
 use stencil::Stencil;
@@ -114,6 +116,7 @@ pub(crate) fn technique(
         }
         Method::Extrude(normals) => Box::new(Extrude::new(gpu, shadows, draw, normals)),
         Method::ShadowMap { texels } => Box::new(ShadowMap::new(gpu, shadows, draw, texels)?),
+        Method::Oracle => Box::new(OracleMask::new(gpu, shadows, draw)),
         Method::RayTrace => Box::new(RayTrace::new(gpu, shadows, draw)),
         Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
     })

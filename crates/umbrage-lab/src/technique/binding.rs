@@ -58,3 +58,15 @@ pub(super) fn buffer(ty: BufferBindingType) -> BindingType {
 
 /// Read only.
 pub(super) const STORAGE: BufferBindingType = BufferBindingType::Storage { read_only: true };
+
+/// All of a texture, not filtered.
+pub(super) fn texture(
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> BindingType {
+    BindingType::Texture {
+        sample_type,
+        view_dimension,
+        multisampled: false,
+    }
+}

@@ -22,7 +22,7 @@ use wgpu::{BindGroupLayout, BufferUsages, ShaderStages, TextureFormat, TextureUs
 
 use self::primary::Primary;
 use self::tree::Tree;
-use super::binding::{STORAGE, bind, buffer, layout};
+use super::binding::{STORAGE, bind, buffer, layout, texture};
 use super::{Given, Technique, TechniqueReport};
 use crate::gbuffer::whole;
 use crate::gpu::{Gpu, GpuError};
@@ -310,15 +310,4 @@ fn pipeline(gpu: &Gpu, layers: &str, layouts: &[&BindGroupLayout; 2]) -> wgpu::C
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     })
-}
-
-fn texture(
-    sample_type: wgpu::TextureSampleType,
-    view_dimension: wgpu::TextureViewDimension,
-) -> wgpu::BindingType {
-    wgpu::BindingType::Texture {
-        sample_type,
-        view_dimension,
-        multisampled: false,
-    }
 }
