@@ -70,3 +70,25 @@ pub fn open(spec: &str, progress: &dyn Progress) -> Result<Scene, SceneError> {
         None => load(Path::new(spec), progress),
     }
 }
+
+/// Whether [`open`] would find what a person names: the file is there and may be read, or the
+/// generator knows all that is asked. Nothing is loaded, so a broken file passes.
+///
+/// # Errors
+/// As [`open`], as far as that shows.
+pub fn find(spec: &str) -> Result<(), SceneError> {
+    let path = Path::new(spec);
+    match spec.strip_prefix("gen:") {
+        Some(generator) => generate::check(generator),
+        None => match std::fs::File::open(path).and_then(|file| file.metadata()) {
+            Err(source) => Err(SceneError::Io {
+                path: path.to_owned(),
+                source,
+            }),
+            Ok(there) if !there.is_file() => Err(SceneError::NotAFile {
+                path: path.to_owned(),
+            }),
+            Ok(_) => Ok(()),
+        },
+    }
+}
