@@ -102,7 +102,12 @@ fn what_cannot_be_read_or_written_shows_before_anything_is_measured() {
     let message = refused(2, &bench(&[SCENE, "--world", &world]));
     assert!(message.contains("one by one"), "{message}");
     let out = folder.path("report");
-    for scene in ["no/such.glb", "gen:soup?trees=3", "gen:forest"] {
+    for scene in [
+        "no/such.glb",
+        "Cargo.toml",
+        "gen:soup?trees=3",
+        "gen:forest",
+    ] {
         refused(2, &bench(&[scene, "-o", &out]));
     }
     refused(2, &bench(&["-o", "/dev/null/report"]));

@@ -203,6 +203,15 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_is_narrow_enough_for_the_page() {
+        let picture = Difference::new([1000, 2], &[1.0; 2000], &[0; 2000], &[0; 2000])
+            .and_then(|difference| difference.picture())
+            .unwrap();
+        assert_eq!(picture.size, [334, 1]);
+        assert_eq!(decoded(&picture.png).0.width, 334);
+    }
+
+    #[test]
     fn a_slice_of_another_length_is_named() {
         let error = Difference::new([2, 1], &[0.0; 2], &[0; 3], &[0; 2]).unwrap_err();
         assert_eq!(

@@ -36,7 +36,7 @@ fn table(report: &BenchReport, view: &View) -> Table {
         "method",
         "frame ms",
         "x none",
-        "build ms",
+        "volumes ms",
         "first ms",
         "gpu ms",
         "wrong",

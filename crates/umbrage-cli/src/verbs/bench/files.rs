@@ -3,6 +3,9 @@
 //! What is typed wrong should not show after an hour: scenes are looked for, and the report is
 //! written while it is still empty.
 
+use std::fs::Metadata;
+use std::path::Path;
+
 use umbrage_report::bench::{self, BenchReport};
 
 use super::interrupt::Interrupt;
@@ -36,19 +39,23 @@ pub(super) fn try_out(
     interrupt: &Interrupt,
 ) -> Result<(), CliError> {
     write(args, report, interrupt)?;
-    let path = args.results.json.as_deref();
-    match path.filter(|path| !json::is_stdout(path)) {
-        // A pipe or a device would be handed two documents.
-        Some(path)
-            if path
-                .metadata()
-                .map_or(true, |there| there.is_file() || there.is_dir()) =>
-        {
-            let _whole = interrupt.writing();
-            json::write(path, report)
-        }
-        _ => Ok(()),
+    // A pipe or a device would be handed two documents.
+    match args.results.json.as_deref().filter(|path| is_file(path)) {
+        Some(path) => write_json(path, report, interrupt),
+        None => Ok(()),
     }
+}
+
+/// Whether `path` is, or will be, a file rather than standard output, a pipe or a device.
+fn is_file(path: &Path) -> bool {
+    let may_be = |there: Metadata| there.is_file() || there.is_dir();
+    !json::is_stdout(path) && path.metadata().map_or(true, may_be)
+}
+
+fn write_json(path: &Path, report: &BenchReport, interrupt: &Interrupt) -> Result<(), CliError> {
+    // Who reads a pipe may never do so, and the program should still end.
+    let _whole = is_file(path).then(|| interrupt.writing());
+    json::write(path, report)
 }
 
 /// Writes the report's folder.
@@ -77,8 +84,7 @@ pub(super) fn hand_over(
         }
     }
     if let Some(path) = &args.results.json {
-        let _whole = interrupt.writing();
-        json::write(path, report)?;
+        write_json(path, report, interrupt)?;
     }
     written
 }
