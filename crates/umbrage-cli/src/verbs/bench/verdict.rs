@@ -20,6 +20,7 @@ pub(super) fn verdict(
         faults.push(format!("interrupted: {rows} of {asked} rows were measured"));
     }
     faults.extend(bad_rows(report));
+    faults.extend(unjudged_rows(report));
     if let Some(baseline) = baseline.filter(|_| report.complete) {
         let found = bench::compare(baseline, report, args.ratio)?;
         if args.results.shows_tables() {
@@ -50,6 +51,16 @@ fn bad_rows(report: &BenchReport) -> Option<String> {
     ))
 }
 
+/// How many rows the oracle was asked for and did not get to: Ctrl-C came in the last.
+fn unjudged_rows(report: &BenchReport) -> Option<String> {
+    let is_unjudged = |row: &&BenchRow| row.wrong.is_none() && row.failed.is_none();
+    let rows = report.rows.iter().filter(is_unjudged).count();
+    let first = report.rows.iter().find(is_unjudged)?;
+    let were = if rows == 1 { "row was" } else { "rows were" };
+    let text = format!("{rows} {were} not judged; first {}", first.name());
+    report.oracle.then_some(text)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,6 +75,16 @@ mod tests {
             report.push(row);
         }
         assert_eq!(bad_rows(&report), None);
+        report.oracle = true;
+        assert_eq!(unjudged_rows(&report), None);
+        report.rows[2].wrong = None;
+        let message = unjudged_rows(&report).unwrap();
+        assert_eq!(
+            message,
+            "1 row was not judged; first brute in a.glb, camera auto, 8x8"
+        );
+        report.oracle = false;
+        assert_eq!(unjudged_rows(&report), None);
         report.rows[1].wrong = Some(3);
         let message = bad_rows(&report).unwrap();
         assert!(message.starts_with("1 of 3 rows"), "{message}");
