@@ -326,7 +326,7 @@ impl ResultArgs {
     }
 }
 
-const IGNORED: &str = "Accepted and ignored: nothing is drawn";
+const IGNORED: &str = "Accepted and ignored";
 
 /// Common options that verbs which draw nothing accept, so that scripts can pass the same ones to
 /// every verb, and do not look at.
