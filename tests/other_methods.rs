@@ -212,3 +212,37 @@ fn a_missing_caster_is_wrong() {
         assert!(found.wrong > 3 * expected + 50, "{}", method.name());
     }
 }
+
+/// Frames are drawn by other batches of lights than masks are: all at once, or as many as a method's
+/// buffers hold. So pictures of several hundred lights must be the counter's too.
+#[test]
+fn pictures_of_many_lights_agree() {
+    let site = bundled("stormkeep");
+    let view = site.seeded_view(1, [160, 90]);
+    let mut lab = lab();
+    let mut picture = |method: &str| {
+        let method: Method = method.parse().expect("a method");
+        lab.render(&site.stage, &site.lights, &view, method, 1)
+            .expect("a picture")
+            .light
+    };
+    let right = picture("counter");
+    let differing = |light: &[Vec3]| {
+        let mean = right.iter().map(|c| c.length()).sum::<f32>() / right.len() as f32;
+        let far = |(a, b): &(&Vec3, &Vec3)| (**a - **b).length() > 0.02 * (mean + b.length());
+        light.iter().zip(&right).filter(far).count()
+    };
+    let dark = differing(&picture("none"));
+    assert!(dark > 500, "{dark}");
+    for method in ["brute", "mask-alpha", "mask-max", "raytrace", "oracle"] {
+        let found = differing(&picture(method));
+        assert!(found < 20, "{method}: {found} pixels differ");
+    }
+    for method in ["mask-screen", "shadowmap-512", "shadowmap-2048"] {
+        let found = differing(&picture(method));
+        assert!(
+            found < dark / 2,
+            "{method}: {found} of {dark} pixels differ"
+        );
+    }
+}

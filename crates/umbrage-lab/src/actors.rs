@@ -63,7 +63,10 @@ impl Stage {
             (actor.instance, triangles)
         });
         self.soup.repose(&self.scene, &posed, parts);
-        for actor in &self.actors {
+        // An actor may have been taken out of the world.
+        let there = |actor: &&Actor| self.world.object(actor.object).is_ok();
+        let there: Vec<Actor> = self.actors.iter().filter(there).cloned().collect();
+        for actor in &there {
             let vertices = actor.vertices.start as usize..actor.vertices.end as usize;
             let placed = &self.soup.positions[vertices.clone()];
             let deformed = self.world.deform(actor.object, placed);

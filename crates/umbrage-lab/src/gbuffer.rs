@@ -120,21 +120,14 @@ impl GBufferPass {
         let soup = &stage.soup;
         let device = &gpu.device;
         let storage = |label: &str, bytes: &[u8]| {
-            let limit = device.limits().max_storage_buffer_binding_size;
-            if bytes.len() as u64 > limit {
-                return Err(umbrage::RenderError::BufferTooLarge {
-                    what: "shading attributes",
-                    needed: bytes.len() as u64,
-                    limit,
-                });
-            }
-            Ok(
-                device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            gpu.check_storage("shading attributes", bytes.len())?;
+            Ok::<_, umbrage::RenderError>(device.create_buffer_init(
+                &wgpu::util::BufferInitDescriptor {
                     label: Some(label),
                     contents: if bytes.is_empty() { &[0; 32] } else { bytes },
                     usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                }),
-            )
+                },
+            ))
         };
         // Objects that are no actors have the first material, the normals of their faces, no texture.
         let surfaces = stage.surfaces();

@@ -1,7 +1,7 @@
 //! Adapter and device: the one place where the lab touches the machine.
 
 use thiserror::Error;
-use umbrage::RenderError;
+use umbrage::{RenderError, check_storage};
 use umbrage_truth::NearClip;
 
 /// Which adapter to use.
@@ -58,6 +58,12 @@ pub enum GpuError {
         /// Its size.
         bytes: u64,
     },
+    /// A heat map of volumes for a method that has none.
+    #[error("{method} draws no volumes, so there is no such heat map of it; lights works")]
+    NoVolumes {
+        /// Its name.
+        method: String,
+    },
     /// An array of textures would pass a device limit.
     #[error("{lights} lights are more than the {limit} that a mask on this device can hold")]
     TooManyLights {
@@ -108,6 +114,15 @@ pub struct Gpu {
 }
 
 impl Gpu {
+    /// Whether a storage buffer of so many bytes can be made and bound.
+    pub(crate) fn check_storage(
+        &self,
+        what: &'static str,
+        bytes: usize,
+    ) -> Result<(), RenderError> {
+        check_storage(&self.device, what, bytes as u64).map(|_| ())
+    }
+
     /// What happens to surfaces before the near plane.
     pub fn near_clip(&self) -> NearClip {
         match self.depth_clamp {

@@ -35,6 +35,11 @@ impl Lab {
         method: Method,
         heat: Heat,
     ) -> Result<Vec<f32>, GpuError> {
+        if heat != Heat::Lights && method != Method::None && method.recipe().is_none() {
+            return Err(GpuError::NoVolumes {
+                method: method.name().into_owned(),
+            });
+        }
         let culls = self.culls;
         if heat == Heat::Layers {
             self.culls = Culls::NONE.with(Cull::View);

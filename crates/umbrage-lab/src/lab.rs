@@ -136,7 +136,7 @@ impl Lab {
                 depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
                 sample_count: 1,
                 depth_clamp: self.gpu.depth_clamp,
-                extrusion: method.recipe().unwrap_or_default().extrusion,
+                extrusion: self.method.recipe().unwrap_or_default().extrusion,
                 volume_color,
             },
         )?;
@@ -155,7 +155,7 @@ impl Lab {
             surface,
             technique,
             method,
-            objects: stage.world.objects.iter().map(|o| o.placed).collect(),
+            built: stage.world.topology(),
         })
     }
 
@@ -215,6 +215,7 @@ impl Lab {
 
     fn begin(&mut self, stage: &Stage, view: &View, method: Method) -> Result<Rendering, GpuError> {
         self.frames.clear();
+        self.method = method;
         let draw = LightDraw::Shade;
         let usage = wgpu::TextureUsages::COPY_SRC;
         Ok(Rendering {
@@ -277,7 +278,8 @@ impl Lab {
         view: &View,
     ) -> Result<(), GpuError> {
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        if run.shadows.upload_world(device, queue, &stage.world)? || run.placed(stage) {
+        let replaced = run.shadows.upload_world(device, queue, &stage.world)?;
+        if run.rebuilt(stage) || replaced {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
         run.surface.update(&self.gpu, stage);

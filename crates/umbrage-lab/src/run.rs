@@ -20,15 +20,15 @@ pub struct Run {
     pub(crate) technique: Box<dyn Technique>,
     /// Whose technique it is.
     pub(crate) method: Method,
-    /// When each object was placed that `surface` knows.
-    pub(crate) objects: Vec<u64>,
+    /// What triangles `surface` knows.
+    pub(crate) built: Vec<u64>,
 }
 
 impl Run {
-    /// Whether objects came or went since the last call.
-    pub(crate) fn placed(&mut self, stage: &Stage) -> bool {
-        let objects: Vec<u64> = stage.world.objects.iter().map(|o| o.placed).collect();
-        std::mem::replace(&mut self.objects, objects.clone()) != objects
+    /// Whether triangles came or went since the last call.
+    pub(crate) fn rebuilt(&mut self, stage: &Stage) -> bool {
+        let built = stage.world.topology();
+        std::mem::replace(&mut self.built, built.clone()) != built
     }
 
     /// Depth and surface, and what of it each light can be seen to light.

@@ -11,6 +11,7 @@ mod oracle;
 mod ray_trace;
 mod shadow_map;
 mod stencil;
+mod unseen;
 mod unshadowed;
 
 use std::fmt::Debug;

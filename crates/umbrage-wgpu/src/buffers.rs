@@ -6,8 +6,8 @@ use wgpu::{Buffer, BufferUsages, Device, Queue};
 
 use crate::RenderError;
 
-/// The most bytes a storage buffer may have, if that is enough.
-fn check_size(device: &Device, what: &'static str, needed: u64) -> Result<u64, RenderError> {
+/// The most bytes that a storage buffer may have on `device`, if `needed` are no more.
+pub fn check_storage(device: &Device, what: &'static str, needed: u64) -> Result<u64, RenderError> {
     let limits = device.limits();
     let limit = limits
         .max_storage_buffer_binding_size
@@ -61,7 +61,7 @@ impl Growing {
 
     /// Makes room for `needed` bytes; true if the buffer was replaced and so holds nothing.
     pub(crate) fn reserve(&mut self, device: &Device, needed: u64) -> Result<bool, RenderError> {
-        let limit = check_size(device, self.label, needed)?;
+        let limit = check_storage(device, self.label, needed)?;
         let short = needed > self.buffer.size();
         if short {
             let size = (needed + needed / 2).next_multiple_of(256).min(limit & !3);

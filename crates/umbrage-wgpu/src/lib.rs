@@ -20,6 +20,7 @@ mod receivers;
 mod renderer;
 mod world;
 
+pub use buffers::check_storage;
 pub use faces::{CountStep, FaceOptions, VolumeFaces};
 pub use host::{Frame, RenderError, RendererOptions, Uploaded, ViewUniform, VolumeColor};
 pub use receivers::{Call, LightCalls};

@@ -263,8 +263,12 @@ impl ShadowRenderer {
         };
         let calls = self.calls();
         let bind_group = &bind_groups[usize::from(calls.is_some())];
-        let drawn = plan.drawn().filter(|(i, _)| lights.contains(i));
-        for (number, light) in drawn.filter(|(_, light)| !light.scissor.is_empty()) {
+        let end = lights.end.min(plan.lights.len());
+        let of_range = lights.start.min(end)..end;
+        for (number, light) in of_range.clone().zip(&plan.lights[of_range]) {
+            if light.is_skipped() || light.scissor.is_empty() {
+                continue;
+            }
             let s = light.scissor;
             pass.set_scissor_rect(s.x, s.y, s.width, s.height);
             let p = &self.pipelines;

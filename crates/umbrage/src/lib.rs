@@ -100,5 +100,6 @@ pub use umbrage_core::world::{
 pub use umbrage_core::{Casting, Cull, Culls, Fingerprint, Light, LightShape, Mesh, View};
 pub use umbrage_wgpu::{
     CLIP_WGSL, Call, CountStep, FaceOptions, Frame, LIGHT_STENCIL, LightCalls, RenderError,
-    RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces, light_wgsl,
+    RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces,
+    check_storage, light_wgsl,
 };

@@ -149,6 +149,13 @@ pub struct FramePlan {
     cosines: Cosines,
 }
 
+impl LightPlan {
+    /// Whether it is not drawn.
+    pub fn is_skipped(&self) -> bool {
+        matches!(self.path, LightPath::Skipped(_))
+    }
+}
+
 /// Eye counts of the last plan, by the stamp of each light's volume.
 #[derive(Clone, Debug, Default)]
 struct EyeCounts {
@@ -287,6 +294,6 @@ impl FramePlan {
         self.lights
             .iter()
             .enumerate()
-            .filter(|(_, light)| !matches!(light.path, LightPath::Skipped(_)))
+            .filter(|(_, light)| !light.is_skipped())
     }
 }

@@ -24,22 +24,8 @@ pub struct Crow {
     /// Of each edge, the face that runs along it, then the one that runs against it; the only face
     /// of an open edge twice, so that it differs from no one.
     faces: Vec<[u32; 2]>,
-    topology: Topology,
-}
-
-/// What a world's triangles and edges are, whatever their positions.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Topology {
-    fixed: u64,
-    /// When each object was inserted.
-    placed: Vec<u64>,
-}
-
-impl Topology {
-    fn is_of(&self, world: &World) -> bool {
-        let placed = world.objects.iter().map(|o| o.placed);
-        self.fixed == world.fixed_stamp && placed.eq(self.placed.iter().copied())
-    }
+    /// Of the world that they were found in.
+    topology: Vec<u64>,
 }
 
 impl Crow {
@@ -73,16 +59,13 @@ impl Crow {
         }
         Self {
             faces,
-            topology: Topology {
-                fixed: world.fixed_stamp,
-                placed: world.objects.iter().map(|o| o.placed).collect(),
-            },
+            topology: world.topology(),
         }
     }
 
     /// Finds the faces anew if triangles came or went since; objects that moved change nothing.
     pub fn update(&mut self, world: &World) {
-        if !self.topology.is_of(world) {
+        if self.topology != world.topology() {
             *self = Self::new(world);
         }
     }

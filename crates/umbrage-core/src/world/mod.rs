@@ -214,6 +214,13 @@ impl World {
         Ok(world)
     }
 
+    /// Names what triangles there are, wherever they stand: the same for as long as the fixed part
+    /// is the same and no object comes or goes.
+    pub fn topology(&self) -> Vec<u64> {
+        let placed = self.objects.iter().map(|object| object.placed);
+        std::iter::once(self.fixed_stamp).chain(placed).collect()
+    }
+
     /// Builds a world of a mesh that was checked; `weld` says which vertices are one.
     fn build_welded(mesh: &Mesh, weld: impl FnOnce(&Mesh) -> Welded) -> (Self, Welded) {
         let start = Instant::now();

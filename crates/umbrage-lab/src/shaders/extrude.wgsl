@@ -27,15 +27,18 @@ fn position(vertex: u32) -> vec3f {
     return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
 }
 
-// The corner, or its image at infinity. `recede` as in the library's volumes: sides run a little
-// below the surface of the triangle whose edge they hang from, caps must tie with it.
-fn extruded(corner: u32, number: u32, recede: f32) -> vec4f {
+// The corner, or its image at infinity. As in the library's volumes, sides run a little below the
+// surface of the triangle whose edge they hang from, and caps tie with it.
+fn extruded(corner: u32, number: u32, is_cap: bool) -> vec4f {
     let light = lights[number];
     let first = corner / 3u * 3u;
     let a = position(triangles[first]);
     let b = position(triangles[first + 1u]);
     let c = position(triangles[first + 2u]);
     let p = position(triangles[corner]);
+    let q = array(a - view.eye, b - view.eye, c - view.eye);
+    let size = max(max(length(q[0]), length(q[1])), length(q[2]));
+    let edge_on = umbrage_eye_in_plane(cross(b - a, c - a), q[0], size);
     // The same for all three corners, to the last bit: a triangle goes or stays as a whole.
     var normal = cross(b - a, c - a);
     var on_plane = a;
@@ -51,6 +54,11 @@ fn extruded(corner: u32, number: u32, recede: f32) -> vec4f {
         }
     }
     if dot(normal, light.xyz - on_plane * light.w) > 0.0 {
+        // As the depth pass leaves it out.
+        if is_cap && edge_on {
+            return UMBRAGE_NOWHERE;
+        }
+        let recede = select(1.0 - 1.0 / 2097152.0, 1.0, is_cap);
         return umbrage_clip(view, p - view.eye, recede);
     }
     return umbrage_clip(view, p * light.w - light.xyz, 0.0);
@@ -60,14 +68,14 @@ fn extruded(corner: u32, number: u32, recede: f32) -> vec4f {
 fn cap(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
     -> @builtin(position) @invariant vec4f
 {
-    return extruded(corner, number, 1.0);
+    return extruded(corner, number, true);
 }
 
 @vertex
 fn side(@builtin(vertex_index) corner: u32, @builtin(instance_index) number: u32)
     -> @builtin(position) @invariant vec4f
 {
-    return extruded(corner, number, 1.0 - 1.0 / 2097152.0);
+    return extruded(corner, number, false);
 }
 
 // All of the scissor, to leave the stencil clean for the next light.

@@ -5,7 +5,7 @@
 //! quad without area. The shader sends the corners of triangles that face away from the light to
 //! infinity, so that the quads along the silhouette open up as sides, the triangles that face the
 //! light are the light cap and the others the dark cap: a closed volume, counted where it is behind
-//! the surface. Nothing is uploaded and nothing found on the CPU, but every triangle of an object is
+//! the surface. No geometry is uploaded and no silhouette found on the CPU, but every triangle of an object is
 //! drawn for every light that reaches the object.
 //!
 //! That is right for closed meshes, whose shadows are those of casters with two sides: a light inside
@@ -27,10 +27,11 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::Vec3;
-use umbrage::{CLIP_WGSL, Light, ShadowRenderer};
-use umbrage_core::world::World;
+use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage_core::world::{Reach, World};
 use wgpu::util::DeviceExt as _;
 
+use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};
 use crate::gbuffer::DEPTH_STENCIL;
 use crate::gpu::{Gpu, GpuError};
@@ -50,6 +51,7 @@ pub(crate) struct Extrude {
     normals: Normals,
     buffers: Option<Buffers>,
     bind_group: Option<wgpu::BindGroup>,
+    unseen: Unseen,
 }
 
 /// The static buffer.
@@ -60,8 +62,8 @@ struct Buffers {
     meshes: Vec<ClosedMesh>,
     edges: usize,
     unpaired: usize,
-    /// When each object was placed that it knows.
-    objects: Vec<u64>,
+    /// What triangles it knows.
+    built: Vec<u64>,
 }
 
 /// Triangles that cast together: an instance of the scene, or an object.
@@ -174,6 +176,7 @@ impl Extrude {
             normals,
             buffers: None,
             bind_group: None,
+            unseen: Unseen::default(),
         }
     }
 }
@@ -181,11 +184,12 @@ impl Extrude {
 impl Technique for Extrude {
     fn prepare(&mut self, given: &Given<'_>) -> Result<(), GpuError> {
         self.light.prepare(given);
+        self.unseen.update(given)?;
         let device = &given.gpu.device;
         let world = &given.stage.world;
-        let objects: Vec<u64> = world.objects.iter().map(|o| o.placed).collect();
-        if self.buffers.as_ref().is_none_or(|b| b.objects != objects) {
-            self.buffers = Some(Buffers::new(device, given.stage, objects, self.normals));
+        let built = world.topology();
+        if self.buffers.as_ref().is_none_or(|b| b.built != built) {
+            self.buffers = Some(Buffers::new(given.gpu, given.stage, built, self.normals)?);
         }
         let (positions, triangles) = given
             .shadows
@@ -241,13 +245,20 @@ impl Technique for Extrude {
         let Some(buffers) = &self.buffers else {
             return Ok(());
         };
+        if lights.start == 0 {
+            self.unseen.record(given, encoder);
+        }
         let mut pass = light_pass(encoder, given.targets, target, FROM_DARK);
         pass.set_index_buffer(buffers.corners.slice(..), wgpu::IndexFormat::Uint32);
         given
             .shadows
             .record(&mut pass, given.plan, lights, |pass, number, _| {
                 let instance = number as u32..number as u32 + 1;
-                let (light, world) = (&given.lights[number].light, &given.stage.world);
+                if self.unseen.has(number) {
+                    return;
+                }
+                let world = &given.stage.world;
+                let reach = Reach::new(&given.lights[number].light);
                 pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
                 for (pipeline, corners) in [
                     (
@@ -257,7 +268,7 @@ impl Technique for Extrude {
                     (&self.sides, |mesh| &mesh.sides),
                 ] {
                     pass.set_pipeline(pipeline);
-                    let reached = |mesh: &&ClosedMesh| reaches(light, mesh.bounds(world));
+                    let reached = |mesh: &&ClosedMesh| reach.touches_box(mesh.bounds(world));
                     for mesh in buffers.meshes.iter().filter(reached) {
                         pass.draw_indexed(corners(mesh).clone(), 0, instance.clone());
                     }
@@ -294,16 +305,9 @@ impl ClosedMesh {
     }
 }
 
-fn reaches(light: &Light, [min, max]: [Vec3; 2]) -> bool {
-    light.is_directional() || {
-        let nearest = light.position.clamp(min, max.max(min));
-        nearest.distance_squared(light.position) <= light.range * light.range
-    }
-}
-
 impl Buffers {
-    fn new(device: &wgpu::Device, stage: &Stage, objects: Vec<u64>, normals: Normals) -> Self {
-        let world = &stage.world;
+    fn new(gpu: &Gpu, stage: &Stage, built: Vec<u64>, normals: Normals) -> Result<Self, GpuError> {
+        let (device, world) = (&gpu.device, &stage.world);
         let mut meshes = Vec::new();
         let mut corners = Vec::new();
         let (mut edges, mut unpaired) = (0, 0);
@@ -337,7 +341,10 @@ impl Buffers {
             add(&of, Triangles::Object(slot));
         }
         corners.resize(corners.len().max(3), 0);
-        Self {
+        let skin = skin::corners(stage, normals);
+        gpu.check_storage("corners of extruded triangles", size_of_val(&corners[..]))?;
+        gpu.check_storage("skinned normals", size_of_val(&skin[..]))?;
+        Ok(Self {
             corners: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("extrude corners"),
                 contents: bytemuck::cast_slice(&corners),
@@ -345,14 +352,14 @@ impl Buffers {
             }),
             skin: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("skinned normals"),
-                contents: bytemuck::cast_slice(&skin::corners(stage, normals)),
+                contents: bytemuck::cast_slice(&skin),
                 usage: wgpu::BufferUsages::STORAGE,
             }),
             meshes,
             edges,
             unpaired,
-            objects,
-        }
+            built,
+        })
     }
 }
 

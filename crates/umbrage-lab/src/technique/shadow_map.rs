@@ -16,7 +16,6 @@ mod face;
 mod pool;
 #[cfg(test)]
 mod tests;
-mod unseen;
 
 use std::ops::Range;
 
@@ -27,8 +26,8 @@ use self::casters::{Casters, casters};
 use self::draw::{Bias, CasterPass, Drawing, write_faces};
 use self::face::{Face, face_count, faces};
 use self::pool::{BUDGET, Map, Pool, bytes};
-use self::unseen::Unseen;
 use super::binding::{bind, buffer, layout};
+use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
@@ -206,9 +205,15 @@ impl ShadowMap {
         let wanted = drawn.iter().map(|&n| bytes(self.texels, faces(n))).sum();
         let mut is_drawn = vec![false; self.lights.len()];
         drawn.iter().for_each(|&number| is_drawn[number] = true);
+        if wanted <= self.pool.budget() {
+            self.pool.free_scratch();
+        }
+        let without = (drawn.iter()).filter(|&&number| self.lights[number].map.is_none());
+        let missing: u64 = without.map(|&n| bytes(self.texels, faces(n))).sum();
+        let scarce = missing > self.pool.room();
         for (number, kept) in self.lights.iter_mut().enumerate() {
             let other = |map: &mut Map| map.faces.len() != faces(number) as usize;
-            let spare = !is_drawn[number] && wanted > self.pool.budget();
+            let spare = !is_drawn[number] && scarce;
             if let Some(map) = kept.map.take_if(|map| spare || other(map)) {
                 self.pool.give(map);
                 (kept.reading, kept.drawn) = (None, 0);

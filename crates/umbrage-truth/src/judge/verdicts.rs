@@ -44,12 +44,18 @@ struct TileVerdicts {
 /// One bit for each pixel of a tile.
 type Bits = [u64; (SIDE * SIDE / 64) as usize];
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct LightVerdicts {
     light: u32,
     sample: Bits,
     lit: Bits,
-    /// Where it is known whether the verdict is ambiguous.
+    /// Nothing until a mask differs somewhere.
+    ambiguity: Option<Box<Ambiguity>>,
+}
+
+/// Where it is known whether the verdict is ambiguous, and where it is.
+#[derive(Clone, Debug, Default)]
+struct Ambiguity {
     known: Bits,
     ambiguous: Bits,
 }
@@ -135,7 +141,8 @@ impl Verdicts {
                 for k in ones(&of_light.sample) {
                     let [x, y] = tile.tile.place(k);
                     if says_lit(x, y, of_light.light as usize) != has(&of_light.lit, k) {
-                        let counts = match has(&of_light.ambiguous, k) {
+                        let ambiguity = of_light.ambiguity.as_ref();
+                        let counts = match ambiguity.is_some_and(|a| has(&a.ambiguous, k)) {
                             true => &mut map.ambiguous,
                             false => &mut map.wrong,
                         };
@@ -159,8 +166,7 @@ impl TileVerdicts {
                     light: light as u32,
                     sample: Bits::default(),
                     lit: Bits::default(),
-                    known: Bits::default(),
-                    ambiguous: Bits::default(),
+                    ambiguity: None,
                 });
             }
             if let Some(of_light) = found.last_mut() {
@@ -202,17 +208,18 @@ impl TileVerdicts {
                     false => (WrongKind::Lit, Verdict::Shadowed),
                     true => (WrongKind::Shadowed, Verdict::Lit),
                 };
-                if !has(&found.known, k) {
-                    set(&mut found.known, k);
+                let ambiguity = found.ambiguity.get_or_insert_default();
+                if !has(&ambiguity.known, k) {
+                    set(&mut ambiguity.known, k);
                     if around[k].is_none() {
                         around[k] = neighbourhood(oracle, rays, x, y);
                     }
                     let near = around[k].as_ref();
                     if near.is_some_and(|n| n.is_ambiguous(oracle, &lights[light], verdict)) {
-                        set(&mut found.ambiguous, k);
+                        set(&mut ambiguity.ambiguous, k);
                     }
                 }
-                if has(&found.ambiguous, k) {
+                if has(&ambiguity.ambiguous, k) {
                     of_light.ambiguous += 1;
                     continue;
                 }

@@ -54,26 +54,37 @@ fn volume_vertex(vertex: u32, extruded: bool, light: u32, recede: f32) -> vec4f 
     return umbrage_clip(view, p - view.eye, recede);
 }
 
-// Two triangles a quad: (a, a', b) and (b, a', b'), a' extruded; front faces look outward.
-fn side_corner(ends: vec2u, index: u32, light: u32) -> vec4f {
-    let corner = index % 6u;
-    let at_end = corner == 2u || corner == 3u || corner == 5u;
-    let extruded = corner == 1u || corner >= 4u;
-    return volume_vertex(select(ends.x, ends.y, at_end), extruded, light, RECEDE);
+// A quad's edge as its triangle runs along it.
+struct Side {
+    ends: vec2u,
+    // Whether that is against the order in the edge table.
+    against: bool,
 }
 
-// Start and end of a quad's edge.
-fn quad_ends(quad: u32) -> vec2u {
+fn side_of(quad: u32) -> Side {
     let word = quads[quad];
     let ends = edges[word >> 1u];
-    return select(ends, ends.yx, (word & 1u) == 1u);
+    let against = (word & 1u) == 1u;
+    return Side(select(ends, ends.yx, against), against);
+}
+
+// Two triangles a quad, extruded vertices marked: (a, a', b) and (b, a', b'); front faces look
+// outward. Along the other way of the edge the same two, each with its last two vertices swapped:
+// where an edge has quads both ways, they are to count alike to the last bit of depth, and a
+// rasteriser that turns triangles the other way round by such a swap then does.
+fn side_corner(side: Side, index: u32, light: u32) -> vec4f {
+    let corner = index % 6u;
+    let at_end = select(0x2cu, 0x25u, side.against) >> corner & 1u;
+    let extruded = select(0x32u, 0x34u, side.against) >> corner & 1u;
+    let vertex = select(side.ends.x, side.ends.y, at_end == 1u);
+    return volume_vertex(vertex, extruded == 1u, light, RECEDE);
 }
 
 @vertex
 fn side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
 {
-    return side_corner(quad_ends(index / 6u), index, light);
+    return side_corner(side_of(index / 6u), index, light);
 }
 
 // The z-fail path's sides: those that the eye is on are left out.
@@ -81,11 +92,11 @@ fn side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
 fn zfail_side(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
 {
-    let ends = quad_ends(index / 6u);
-    if eye_on_side(position(ends.x), position(ends.y), lights[light]) {
+    let side = side_of(index / 6u);
+    if eye_on_side(position(side.ends.x), position(side.ends.y), lights[light]) {
         return UMBRAGE_NOWHERE;
     }
-    return side_corner(ends, index, light);
+    return side_corner(side, index, light);
 }
 
 // Whether the eye is on the side that the edge a-b casts, not just in its plane.

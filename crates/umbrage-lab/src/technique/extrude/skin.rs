@@ -28,18 +28,25 @@ pub(super) struct SkinnedCorner {
     weights: [f32; 4],
 }
 
-/// One entry for each corner after the fixed triangles; at least one.
+/// One entry for each corner after the fixed triangles; at least one, and no more if normals are
+/// found anew.
 pub(super) fn corners(stage: &Stage, normals: Normals) -> Vec<SkinnedCorner> {
     let world = &stage.world;
     let fixed = world.fixed.triangles.end as usize;
+    if normals == Normals::Neighbours {
+        return vec![SkinnedCorner::default()];
+    }
     let count = 3 * (world.triangles.len() - fixed);
     let mut all = vec![SkinnedCorner::default(); count.max(1)];
-    if normals == Normals::Neighbours {
-        return all;
-    }
     let mut first_joint = 0;
     for actor in &stage.actors {
-        let (Some(skin), Ok(object)) = (stage.skinned(actor), world.object(actor.object)) else {
+        let Some(skin) = stage.skinned(actor) else {
+            continue;
+        };
+        let joints = first_joint;
+        first_joint += skin.matrices.len() as u32;
+        // Gone actors have joints, but no triangles.
+        let Ok(object) = world.object(actor.object) else {
             continue;
         };
         let Ok(became) = world.vertices_of(actor.object) else {
@@ -54,14 +61,8 @@ pub(super) fn corners(stage: &Stage, normals: Normals) -> Vec<SkinnedCorner> {
                 continue;
             };
             let place = 3 * (t as usize - fixed);
-            all[place..place + 3].copy_from_slice(&of_triangle(
-                &skin,
-                [a, b, c],
-                first_joint,
-                normals,
-            ));
+            all[place..place + 3].copy_from_slice(&of_triangle(&skin, [a, b, c], joints, normals));
         }
-        first_joint += skin.matrices.len() as u32;
     }
     all
 }

@@ -170,10 +170,7 @@ fn corners(world: &World, first: usize) -> Vec<Vec4> {
 
 fn buffer(gpu: &Gpu, label: &'static str, bytes: &[u8]) -> Result<wgpu::Buffer, GpuError> {
     use wgpu::util::DeviceExt as _;
-    let limit = gpu.device.limits().max_storage_buffer_binding_size;
-    if bytes.len() as u64 > limit {
-        return Err(too_large(label, bytes.len() as u64, gpu).into());
-    }
+    gpu.check_storage(label, bytes.len())?;
     let nothing = [0; 48];
     Ok(gpu
         .device

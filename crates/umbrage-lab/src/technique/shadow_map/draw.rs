@@ -78,17 +78,7 @@ impl CasterPass {
             true => &[0],
             false => &casters.triangles[..],
         };
-        let needed = size_of_val(triangles) as u64;
-        let limit = gpu.device.limits().max_storage_buffer_binding_size;
-        if needed > limit {
-            let what = "casters of a light";
-            return Err(umbrage::RenderError::BufferTooLarge {
-                what,
-                needed,
-                limit,
-            }
-            .into());
-        }
+        gpu.check_storage("casters of a light", size_of_val(triangles))?;
         let faces = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("shadow map faces"),
             size: MAP_BYTES,

@@ -27,10 +27,9 @@ pub(super) struct Face {
 
 /// Cosine of the half angle beyond which a spot gets a cube.
 const WIDEST_COS: f32 = 0.173_648_18; // 80 degrees
-/// The near plane as a share of the range.
+/// The near plane as a share of the range, and at most this far from the light, in metres.
 const NEAR: f32 = 1.0 / 65536.0;
-/// Range that stands for any greater one, metres.
-const FAR: f32 = 1e6;
+const FARTHEST_NEAR: f32 = 1e-4;
 
 /// How many faces a light's map has.
 pub(super) fn face_count(light: &Light) -> u32 {
@@ -51,7 +50,7 @@ pub(super) fn faces(light: &Light, texels: u32, view: &View, bounds: [Vec3; 2]) 
         up: right.cross(forward),
         scale_y: shown / tan,
         forward,
-        near: NEAR * light.range.min(FAR),
+        near: (NEAR * light.range).min(FARTHEST_NEAR),
         origin: light.position,
         length: 0.0,
     };

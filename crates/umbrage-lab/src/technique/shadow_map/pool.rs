@@ -100,6 +100,17 @@ impl Pool {
         self.budget
     }
 
+    /// Bytes that can still be taken.
+    pub(super) fn room(&self) -> u64 {
+        let free: u64 = self.free.iter().map(|map| map.bytes).sum();
+        self.budget.saturating_sub(self.held) + free
+    }
+
+    /// Gives the scratch maps to lights, since there are enough for all.
+    pub(super) fn free_scratch(&mut self) {
+        self.free.append(&mut self.scratch);
+    }
+
     /// A map of its own for a light, if there is one left.
     pub(super) fn take(&mut self, gpu: &Gpu, faces: u32) -> Option<Map> {
         let of_faces = |map: &Map| map.faces.len() == faces as usize;

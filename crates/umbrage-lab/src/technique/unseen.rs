@@ -1,8 +1,8 @@
 //! Lights that reached no visible surface in the last frame, for as long as nothing changes.
 //!
-//! The receivers of a frame are found on the GPU, too late to leave out the maps of that very
-//! frame. So they are read back with the next, and count if view, lights and world are the same:
-//! maps then spare exactly the lights that volumes spare, and no shadow is ever late.
+//! The receivers of a frame are found on the GPU, too late to leave out what is drawn directly in that
+//! very frame. So they are read back with the next, and count if view, lights and world are the same:
+//! other methods then spare exactly the lights that volumes spare, and no shadow is ever late.
 
 use bytemuck::pod_read_unaligned;
 use umbrage::{Light, LightCalls, View};
