@@ -9,7 +9,7 @@ use umbrage_lab::application::NoMask;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
 use umbrage_lab::stage::StageError;
-use umbrage_report::bench::BaselineError;
+use umbrage_report::bench::{BaselineError, OtherSettings};
 
 /// The one error of the command line. Wrong options never get here: clap reports them.
 #[derive(Debug, Error)]
@@ -80,6 +80,12 @@ impl From<NoMask> for CliError {
 impl From<BaselineError> for CliError {
     fn from(error: BaselineError) -> Self {
         CliError::BadInput(error.to_string())
+    }
+}
+
+impl From<OtherSettings> for CliError {
+    fn from(error: OtherSettings) -> Self {
+        CliError::BadInput(format!("--baseline: {error}"))
     }
 }
 

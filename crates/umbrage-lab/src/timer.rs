@@ -120,22 +120,46 @@ pub(crate) fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
+/// The middle of sorted values, or halfway between the two in the middle; null without values.
+pub fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let upper = *values.get(values.len() / 2)?;
+    let lower = values[(values.len() - 1) / 2];
+    Some(lower + (upper - lower) * 0.5)
+}
+
 pub(crate) fn medians(all: &[StageTimes]) -> StageTimes {
-    let median = |field: fn(&StageTimes) -> f64| {
+    let of = |field: fn(&StageTimes) -> f64| {
         let mut values: Vec<f64> = all.iter().map(field).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or_default()
+        median(&mut values).unwrap_or_default()
     };
     StageTimes {
-        volumes: median(|t| t.volumes),
+        volumes: of(|t| t.volumes),
         volumes_first: 0.0,
-        plan: median(|t| t.plan),
-        upload: median(|t| t.upload),
-        record: median(|t| t.record),
-        gpu_surface: median(|t| t.gpu_surface),
-        gpu_receivers: median(|t| t.gpu_receivers),
-        gpu_lights: median(|t| t.gpu_lights),
-        frame: median(|t| t.frame),
+        plan: of(|t| t.plan),
+        upload: of(|t| t.upload),
+        record: of(|t| t.record),
+        gpu_surface: of(|t| t.gpu_surface),
+        gpu_receivers: of(|t| t.gpu_receivers),
+        gpu_lights: of(|t| t.gpu_lights),
+        frame: of(|t| t.frame),
         frame_first: 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_of_an_even_count_is_halfway() {
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), Some(2.5));
+        assert_eq!(median(&mut [9.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&mut []), None);
+        let times = [1.0, 4.0].map(|frame| StageTimes {
+            frame,
+            ..StageTimes::default()
+        });
+        assert_eq!(medians(&times).frame, 2.5);
     }
 }

@@ -17,9 +17,9 @@ mod when;
 mod write;
 
 pub use baseline::{BaselineError, read};
-pub use compare::{Change, Comparison, Measure, Regression, compare};
+pub use compare::{Change, Comparison, Measure, OtherSettings, Regression, compare};
 pub use csv::csv;
-pub use difference::{Difference, DifferenceError};
+pub use difference::{Difference, DifferenceError, Picture};
 pub use html::html;
 pub use machine::Machine;
 pub use over_all::{OverAll, over_all};

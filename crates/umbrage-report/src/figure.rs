@@ -1,14 +1,14 @@
 //! Numbers as people read them.
 //!
-//! Takes f64; gives text with three significant digits, without an exponent as long as that is
-//! readable. Invariant: what is not finite reads as a dash, never as `NaN`.
+//! Takes f64; gives text with two or three significant digits, and all of a whole number's, without
+//! an exponent as long as that is readable. Invariant: what is not finite reads as a dash, never as `NaN`.
 
 use crate::grouped;
 
 /// What stands where nothing was measured.
 pub(crate) const NONE: &str = "\u{2013}";
 
-/// Three significant digits: 0.0123, 1.23, 45.6, 1,230.
+/// 0.0012, 0.012, 0.12, 1.23, 45.6, 1,234.
 pub(crate) fn figure(value: f64) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn three_digits_and_no_exponent_where_it_can_be_helped() {
+    fn a_few_digits_and_no_exponent_where_it_can_be_helped() {
         let texts = [0.0, 0.0123, 1.234, 9.996, 45.67, 123.4, 12_345.6].map(figure);
         assert_eq!(
             texts,

@@ -2,8 +2,9 @@
 //!
 //! Takes plain rows of figures ([`bench::BenchReport`]); gives `report.json`, `report.csv` and one
 //! self-contained `index.html` ([`bench::write`]), a table for the terminal ([`bench::terminal`])
-//! and the comparison of two runs ([`bench::compare`]). Nothing is measured here and no other
-//! crate of the workspace is needed to read a report, so a page can be made again from its JSON.
+//! and the comparison of two runs ([`bench::compare`]). Nothing is measured here, and of the
+//! other crates of the workspace only `umbrage-scene` is needed, whose `write::whole` writes the files;
+//! so a page can be made again from its JSON, without the pictures, which are in none.
 //!
 //! ```
 //! use umbrage_report::bench::{self, BenchReport, BenchRow};

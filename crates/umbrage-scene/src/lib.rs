@@ -44,16 +44,31 @@ pub use soup::{MAX_TRIANGLES, Soup};
 /// # Errors
 /// An unknown extension, or whatever the file's format makes impossible to read.
 pub fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneError> {
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
-    match extension.to_ascii_lowercase().as_str() {
-        "glb" | "gltf" => gltf::load(path, progress),
-        "obj" => obj::load(path, progress),
-        _ => Err(SceneError::UnknownFormat {
-            path: path.to_owned(),
-        }),
+    match Format::of(path)? {
+        Format::Gltf => gltf::load(path, progress),
+        Format::Obj => obj::load(path, progress),
+    }
+}
+
+/// What a file's extension says it is.
+enum Format {
+    Gltf,
+    Obj,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, SceneError> {
+        let extension = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "glb" | "gltf" => Ok(Self::Gltf),
+            "obj" => Ok(Self::Obj),
+            _ => Err(SceneError::UnknownFormat {
+                path: path.to_owned(),
+            }),
+        }
     }
 }
 
@@ -68,5 +83,25 @@ pub fn open(spec: &str, progress: &dyn Progress) -> Result<Scene, SceneError> {
     match spec.strip_prefix("gen:") {
         Some(generator) => generate::generate(generator, progress),
         None => load(Path::new(spec), progress),
+    }
+}
+
+/// Whether [`open`] would find what a person names: the file is there and may be read, or the
+/// generator knows all that is asked. Nothing is loaded, so a broken file passes.
+///
+/// # Errors
+/// As [`open`], as far as that shows.
+pub fn find(spec: &str) -> Result<(), SceneError> {
+    if let Some(generator) = spec.strip_prefix("gen:") {
+        return generate::check(generator);
+    }
+    let path = Path::new(spec);
+    Format::of(path)?;
+    let file = std::fs::File::open(path).map_err(SceneError::io(path))?;
+    match file.metadata().map_err(SceneError::io(path))?.is_file() {
+        true => Ok(()),
+        false => Err(SceneError::NotAFile {
+            path: path.to_owned(),
+        }),
     }
 }

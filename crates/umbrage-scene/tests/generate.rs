@@ -153,3 +153,20 @@ fn unknown_names_keys_and_values_list_the_valid_ones() {
         );
     }
 }
+
+#[test]
+fn what_can_be_opened_is_found_and_what_cannot_is_refused_alike() {
+    assert!(umbrage_scene::find("gen:city?triangles=5e7").is_ok());
+    assert!(umbrage_scene::find("../../data/worlds/stormkeep.glb").is_ok());
+    for spec in [
+        "gen:forest",
+        "gen:soup?trees=3",
+        "no/such.glb",
+        "Cargo.toml",
+        "src",
+    ] {
+        let found = umbrage_scene::find(spec).unwrap_err();
+        let opened = umbrage_scene::open(spec, &()).unwrap_err();
+        assert_eq!(found.to_string(), opened.to_string());
+    }
+}

@@ -2,10 +2,14 @@
 //!
 //! Takes scenes, cameras, sizes and methods; gives a report, a row a method and view. The oracle
 //! judges all methods of a view by one cast of its rays. Each view that is done is written, so what
-//! ends a run early leaves a valid report of what there is.
+//! ends a run early leaves a valid report of what there is. A row that fails, or an exact method that
+//! is wrong, is an exit code of its own, as is what got worse than the baseline.
 
+mod files;
 mod interrupt;
 mod row;
+mod settings;
+mod verdict;
 
 use std::time::SystemTime;
 
@@ -19,13 +23,14 @@ use umbrage_truth::{Oracle, Verdicts};
 
 use crate::args::BenchArgs;
 use crate::error::CliError;
-use crate::json;
 use crate::progress::{Bar, Steps};
 use crate::setting::{lights, stage, use_threads, view};
 use crate::values::NamedCamera;
 
 use interrupt::Interrupt;
 use row::{Judge, Task, measure};
+use settings::{command_line, settings};
+use verdict::verdict;
 
 /// Measures, writes, compares.
 pub(crate) fn run(args: &BenchArgs) -> Result<(), CliError> {
@@ -37,12 +42,15 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), CliError> {
     if refused.clone().all(|answer| answer.is_err()) {
         refused.next().unwrap_or(Ok(()))?;
     }
+    files::look_for(args)?;
     use_threads(&args.run);
     let interrupt = Interrupt::listen();
     let mut lab = Lab::new(Gpu::open(&args.run.adapter)?);
     lab.culls = args.run.culls();
     let mut report = BenchReport {
-        command: command_line(),
+        command: command_line(std::env::args_os()),
+        settings: settings(args),
+        oracle: !args.no_oracle,
         when: bench::rfc3339(SystemTime::now()),
         machine: Machine {
             adapter: lab.gpu().adapter.clone(),
@@ -54,37 +62,30 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), CliError> {
         repeat: args.run.repeat.get() as u32,
         ..BenchReport::default()
     };
+    if let Some(baseline) = &baseline {
+        // Refuses other settings; there is nothing to compare yet.
+        bench::compare(baseline, &report, args.ratio)?;
+    }
+    files::try_out(args, &report, &interrupt)?;
     let views = args.scenes.len() * args.cameras().len() * args.sizes.len();
     let steps = Steps::new(args.results.quiet, views * (1 + args.methods.len()));
+    let mut outcome = Ok(());
     for scene in &args.scenes {
-        bench_scene(scene, args, &mut lab, &steps, &interrupt, &mut report)?;
-        if interrupt.came() {
+        outcome = bench_scene(scene, args, &mut lab, &steps, &interrupt, &mut report);
+        if outcome.is_err() {
             break;
         }
     }
     drop(steps);
-    report.complete = !interrupt.came();
-    write(args, &report)?;
-    if args.results.shows_tables() {
-        json::print(&bench::terminal(&report));
-        if let Some(folder) = &args.output {
-            json::print(&format!("\n{}\n", folder.join("index.html").display()));
-        }
+    let asked = views * args.methods.len();
+    report.complete = report.rows.len() == asked;
+    // What there is stays, whatever ended the run; an error alone prints nothing else.
+    if outcome.is_err() && report.rows.is_empty() {
+        return outcome;
     }
-    if let Some(path) = &args.results.json {
-        json::write(path, &report)?;
-    }
-    if interrupt.came() {
-        let rows = report.rows.len();
-        return Err(CliError::CheckFailed(format!(
-            "interrupted: {rows} of {} rows were measured",
-            views * args.methods.len()
-        )));
-    }
-    match baseline {
-        Some(baseline) => compare(args, &baseline, &report),
-        None => Ok(()),
-    }
+    let handed_over = files::hand_over(args, &report, &interrupt);
+    outcome.and(handed_over)?;
+    verdict(args, baseline.as_ref(), &report, asked)
 }
 
 fn bench_scene(
@@ -95,6 +96,9 @@ fn bench_scene(
     interrupt: &Interrupt,
     report: &mut BenchReport,
 ) -> Result<(), CliError> {
+    if interrupt.came() {
+        return Ok(());
+    }
     steps.now(scene, "load");
     let quiet = Bar::new(true);
     let mut stage = stage(scene, &args.world, &quiet)?;
@@ -104,6 +108,9 @@ fn bench_scene(
         for size in &args.sizes {
             let choice = camera.as_ref().map(|camera| &camera.choice);
             let view = view(&stage, &lights, choice, size.0, args.near)?;
+            if interrupt.came() {
+                return Ok(());
+            }
             let mut judge = None;
             if args.no_oracle {
                 steps.step();
@@ -145,30 +152,10 @@ fn bench_scene(
                 report.push(row);
                 steps.step();
             }
-            write(args, report)?;
+            files::write(args, report, interrupt)?;
         }
     }
     Ok(())
-}
-
-fn write(args: &BenchArgs, report: &BenchReport) -> Result<(), CliError> {
-    args.output.as_deref().map_or(Ok(()), |folder| {
-        bench::write(folder, report).map_err(|why| CliError::BadInput(why.to_string()))
-    })
-}
-
-fn compare(args: &BenchArgs, baseline: &BenchReport, report: &BenchReport) -> Result<(), CliError> {
-    let found = bench::compare(baseline, report, args.ratio);
-    if args.results.shows_tables() {
-        json::print(&format!("\n{found}"));
-    }
-    match found.is_worse() {
-        false => Ok(()),
-        true => Err(CliError::CheckFailed(format!(
-            "slower or less exact than the baseline by more than a factor of {}",
-            args.ratio
-        ))),
-    }
 }
 
 /// As typed, or the name of the camera that stands in for it.
@@ -178,16 +165,4 @@ fn camera_name(camera: Option<&NamedCamera>, stage: &Stage) -> String {
         (None, Some(first)) => first.name.clone(),
         (None, None) => "auto".to_owned(),
     }
-}
-
-/// How this program was called, for a shell.
-fn command_line() -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    let quoted = |word: String| match word.chars().all(plain) && !word.is_empty() {
-        true => word,
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    };
-    let words = std::env::args().skip(1).map(quoted);
-    let words: Vec<String> = std::iter::once("umbrage".to_owned()).chain(words).collect();
-    words.join(" ")
 }

@@ -1,15 +1,20 @@
 //! Two runs side by side: what got slower, less exact, or was lost.
 //!
-//! Takes an earlier report, a later one, and the ratio beyond which a difference counts; gives
-//! one [`Change`] for each row of either, matched by scene, method, size and camera. Machines
-//! differ and are noisy, so times are compared as multiples of the floor of the same run
-//! (`times_none`) where both have it, and the floor itself is shown but not judged then.
-//! Invariant: an exact method with anything wrong is a regression, whatever the ratio and
-//! whatever the baseline had.
+//! Takes an earlier report, a later one with the same settings, and the ratio beyond which a
+//! difference counts; gives one [`Change`] for each row of either, matched by scene, method, size
+//! and camera. Machines differ and are noisy, so times are compared as multiples of the floor of
+//! the same run (`times_none`) where both have it. That hides what slows the floor too, so on the
+//! same processor and adapter the floor's own milliseconds are judged, with twice the excess
+//! allowed: absolute times are noisier. Invariant: an exact method with anything wrong is a
+//! regression, whatever the ratio and whatever the baseline had.
 
 mod table;
+#[cfg(test)]
+mod tests;
 
-use super::{BenchReport, BenchRow};
+use thiserror::Error;
+
+use super::{BenchReport, BenchRow, Machine};
 
 /// What two times were compared by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +36,24 @@ pub enum Regression {
     PromiseBroken,
     /// It had figures, and fails now.
     Fails,
+    /// The baseline judged it, this run judges others, and it promises that none is wrong.
+    NotJudged,
+    /// Lights or triangles are others: its figures say nothing about the baseline's.
+    OtherWorkload,
     /// It was in the baseline, and is not in this run.
     Missing,
+}
+
+/// Why two runs cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error(
+    "the baseline was run with other settings: `{before}`, now `{now}`; run both with the same, or make a new baseline"
+)]
+pub struct OtherSettings {
+    /// Of the baseline.
+    pub before: String,
+    /// Of the later run.
+    pub now: String,
 }
 
 /// One row, before and now.
@@ -48,6 +69,8 @@ pub struct Change {
     pub camera: String,
     /// How time was compared, before and now; null where either has none.
     pub time: Option<(Measure, f64, f64)>,
+    /// How many times as long as before it may take.
+    pub allowed: f64,
     /// Wrong pixel-lights before and now; null where the oracle was not asked.
     pub wrong: [Option<u64>; 2],
     /// Whether the baseline has no such row.
@@ -61,41 +84,70 @@ pub struct Change {
 pub struct Comparison {
     /// Beyond which more time, or more wrong ones, count as worse: 1.1 allows a tenth more.
     pub ratio: f64,
+    /// Whether the floor's own milliseconds are judged: processor and adapter are known and equal.
+    pub same_machine: bool,
+    /// Whether the later run asked the oracle.
+    pub judged: bool,
     /// Rows of the baseline in its order, then new ones.
     pub changes: Vec<Change>,
 }
 
 /// Compares `now` with `baseline`; see [`Comparison::ratio`].
-pub fn compare(baseline: &BenchReport, now: &BenchReport, ratio: f64) -> Comparison {
+///
+/// # Errors
+/// Settings that differ. Those that a report does not have, since an older version wrote it, are
+/// taken to be the same.
+pub fn compare(
+    baseline: &BenchReport,
+    now: &BenchReport,
+    ratio: f64,
+) -> Result<Comparison, OtherSettings> {
+    let settings = [&baseline.settings, &now.settings];
+    if settings[0] != settings[1] && settings.iter().all(|known| !known.is_empty()) {
+        let [before, now] = settings.map(String::clone);
+        return Err(OtherSettings { before, now });
+    }
+    let rules = Rules {
+        ratio,
+        same_machine: is_same_machine(&baseline.machine, &now.machine),
+        judged: now.oracle,
+    };
     let find = |report: &BenchReport, wanted: &BenchRow| -> Option<BenchRow> {
         let mut rows = report.rows.iter();
         rows.find(|row| is_same(row, wanted)).cloned()
     };
     let old = baseline.rows.iter().map(|before| match find(now, before) {
-        Some(row) => change(Some(before), &row, ratio),
+        Some(row) => rules.change(Some(before), &row),
         None => Change {
             wrong: [before.wrong, None],
             regressions: vec![Regression::Missing],
-            ..change(None, before, ratio)
+            ..rules.change(None, before)
         },
     });
     let new = now.rows.iter().filter(|row| find(baseline, row).is_none());
     let new = new.map(|row| Change {
         new: true,
-        ..change(None, row, ratio)
+        ..rules.change(None, row)
     });
-    Comparison {
+    Ok(Comparison {
         ratio,
+        same_machine: rules.same_machine,
+        judged: rules.judged,
         changes: old.chain(new).collect(),
-    }
+    })
 }
 
 impl Comparison {
     /// Whether any row is.
     pub fn is_worse(&self) -> bool {
+        self.worse().next().is_some()
+    }
+
+    /// Rows that are.
+    pub fn worse(&self) -> impl Iterator<Item = &Change> {
         self.changes
             .iter()
-            .any(|change| !change.regressions.is_empty())
+            .filter(|change| !change.regressions.is_empty())
     }
 }
 
@@ -103,160 +155,91 @@ fn is_same(a: &BenchRow, b: &BenchRow) -> bool {
     (&a.scene, &a.method, a.size, &a.camera) == (&b.scene, &b.method, b.size, &b.camera)
 }
 
-fn change(before: Option<&BenchRow>, now: &BenchRow, ratio: f64) -> Change {
-    let time = before.and_then(|before| time(before, now));
-    let was = before.and_then(|before| before.wrong);
-    let mut regressions = Vec::new();
-    if time.is_some_and(|(_, before, now)| now > before * ratio) {
-        regressions.push(Regression::Slower);
-    }
-    if now.exact && now.wrong.is_some_and(|wrong| wrong > 0) {
-        regressions.push(Regression::PromiseBroken);
-    } else if let (Some(was), Some(is)) = (was, now.wrong)
-        && is as f64 > was as f64 * ratio
-    {
-        regressions.push(Regression::LessExact);
-    }
-    let had_figures = before.is_some_and(|before| before.frame_ms.is_some());
-    if had_figures && now.frame_ms.is_none() {
-        regressions.push(Regression::Fails);
-    }
-    Change {
-        scene: now.scene.clone(),
-        method: now.method.clone(),
-        size: now.size,
-        camera: now.camera.clone(),
-        time,
-        wrong: [was, now.wrong],
-        new: false,
-        regressions,
-    }
+/// Only what is known can be the same.
+fn is_same_machine(a: &Machine, b: &Machine) -> bool {
+    let known = !a.cpu.is_empty() && !a.adapter.is_empty();
+    known && (&a.cpu, &a.adapter) == (&b.cpu, &b.adapter)
 }
 
-/// By the floor of the same run where both have it. A floor is always once itself.
-fn time(before: &BenchRow, now: &BenchRow) -> Option<(Measure, f64, f64)> {
-    match (before.times_none, now.times_none) {
-        (Some(before), Some(now)) => Some((Measure::TimesNone, before, now)),
-        _ => Some((Measure::FrameMs, before.frame_ms?, now.frame_ms?)),
-    }
+/// Older versions wrote neither lights nor triangles, which reads as no triangles.
+fn is_other_workload(before: &BenchRow, now: &BenchRow) -> bool {
+    let known = before.triangles > 0 && now.triangles > 0;
+    known && (before.lights, before.triangles) != (now.lights, now.triangles)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// What all rows are held to.
+struct Rules {
+    ratio: f64,
+    same_machine: bool,
+    judged: bool,
+}
 
-    /// (method, exact, ms, wrong), over a floor of `floor_ms`.
-    fn run(floor_ms: f64, rows: &[(&str, bool, f64, u64)]) -> BenchReport {
-        let mut report = BenchReport::default();
-        let floor = ("none", false, floor_ms, 500);
-        for &(method, exact, ms, wrong) in rows.iter().chain([&floor]) {
-            let mut row = BenchRow::new(method, ("a.glb", "auto", [64, 48]));
-            row.exact = exact;
-            row.set_frame_times(&[ms]);
-            row.set_errors(wrong, 0, 1_000_000);
-            report.push(row);
+impl Rules {
+    fn change(&self, before: Option<&BenchRow>, now: &BenchRow) -> Change {
+        let time = before.and_then(|before| self.time(before, now));
+        Change {
+            scene: now.scene.clone(),
+            method: now.method.clone(),
+            size: now.size,
+            camera: now.camera.clone(),
+            time,
+            allowed: self.allowed(now),
+            wrong: [before.and_then(|before| before.wrong), now.wrong],
+            new: false,
+            regressions: self.regressions(before, now, time),
         }
-        report
     }
 
-    fn regressions(comparison: &Comparison) -> Vec<(&str, &[Regression])> {
-        let worse = comparison
-            .changes
-            .iter()
-            .filter(|one| !one.regressions.is_empty());
-        worse.map(|one| (&*one.method, &*one.regressions)).collect()
-    }
-
-    #[test]
-    fn a_machine_twice_as_slow_is_no_regression_but_a_method_is() {
-        let before = run(2.0, &[("counter", true, 6.0, 0), ("half", false, 4.0, 90)]);
-        let slow_machine = run(4.0, &[("counter", true, 12.0, 0), ("half", false, 8.0, 90)]);
-        let same = compare(&before, &slow_machine, 1.1);
-        assert!(!same.is_worse(), "{same}");
-        assert_eq!(same.changes[0].time, Some((Measure::TimesNone, 3.0, 3.0)));
-        let slower = compare(
-            &before,
-            &run(2.0, &[("counter", true, 7.0, 0), ("half", false, 4.0, 90)]),
-            1.1,
-        );
-        assert_eq!(
-            regressions(&slower),
-            [("counter", &[Regression::Slower][..])]
-        );
-        assert!(slower.to_string().contains("SLOWER"), "{slower}");
-        assert!(
-            !compare(
-                &before,
-                &run(2.0, &[("counter", true, 6.5, 0), ("half", false, 4.0, 90)]),
-                1.1
-            )
-            .is_worse()
-        );
-    }
-
-    #[test]
-    fn without_a_floor_milliseconds_are_compared() {
-        let without = |ms| {
-            let mut report = run(1.0, &[("counter", true, ms, 0)]);
-            report.rows.retain(|row| !row.is_floor());
-            report.rows[0].times_none = None;
-            report
+    fn regressions(
+        &self,
+        before: Option<&BenchRow>,
+        now: &BenchRow,
+        time: Option<(Measure, f64, f64)>,
+    ) -> Vec<Regression> {
+        let mut found = Vec::new();
+        if now.breaks_promise() {
+            found.push(Regression::PromiseBroken);
+        }
+        let Some(before) = before else {
+            return found;
         };
-        let comparison = compare(&without(6.0), &without(9.0), 1.1);
-        assert_eq!(
-            comparison.changes[0].time,
-            Some((Measure::FrameMs, 6.0, 9.0))
-        );
-        assert!(comparison.is_worse());
+        let had_figures = before.frame_ms.is_some() && before.failed.is_none();
+        if had_figures && (now.failed.is_some() || now.frame_ms.is_none()) {
+            found.push(Regression::Fails);
+        }
+        if is_other_workload(before, now) {
+            found.push(Regression::OtherWorkload);
+            return found;
+        }
+        if time.is_some_and(|(_, before, is)| is > before * self.allowed(now)) {
+            found.insert(0, Regression::Slower);
+        }
+        match (before.wrong, now.wrong) {
+            (Some(was), Some(is)) if !now.exact && is as f64 > was as f64 * self.ratio => {
+                found.push(Regression::LessExact);
+            }
+            (Some(_), None) if now.exact && self.judged && now.failed.is_none() => {
+                found.push(Regression::NotJudged);
+            }
+            _ => (),
+        }
+        found
     }
 
-    #[test]
-    fn a_broken_promise_is_worse_at_any_ratio_and_even_if_it_was_broken_before() {
-        let broken = run(2.0, &[("counter", true, 6.0, 3)]);
-        let comparison = compare(&broken, &broken, 1e9);
-        assert_eq!(
-            regressions(&comparison),
-            [("counter", &[Regression::PromiseBroken][..])]
-        );
+    /// By the floor of the same run where both have it; the floor, by the clock where that can be.
+    fn time(&self, before: &BenchRow, now: &BenchRow) -> Option<(Measure, f64, f64)> {
+        match (before.times_none, now.times_none) {
+            (Some(was), Some(is)) if !(now.is_floor() && self.same_machine) => {
+                Some((Measure::TimesNone, was, is))
+            }
+            _ => Some((Measure::FrameMs, before.frame_ms?, now.frame_ms?)),
+        }
     }
 
-    #[test]
-    fn an_inexact_method_may_be_wrong_within_the_ratio() {
-        let with = |wrong| run(2.0, &[("half", false, 4.0, wrong)]);
-        assert!(!compare(&with(100), &with(105), 1.1).is_worse());
-        let worse = compare(&with(100), &with(111), 1.1);
-        assert_eq!(
-            regressions(&worse),
-            [("half", &[Regression::LessExact][..])]
-        );
-        assert!(compare(&with(0), &with(1), 1.1).is_worse());
-    }
-
-    #[test]
-    fn rows_that_went_missing_or_fail_are_worse_and_new_ones_are_not() {
-        let before = run(2.0, &[("counter", true, 6.0, 0)]);
-        let mut now = run(2.0, &[("counter", true, 6.0, 0), ("half", false, 4.0, 9)]);
-        assert!(!compare(&before, &now, 1.1).is_worse());
-        assert!(compare(&before, &now, 1.1).to_string().contains("new"));
-        let lost = compare(&now, &before, 1.1);
-        assert_eq!(regressions(&lost), [("half", &[Regression::Missing][..])]);
-        now.rows[0].frame_ms = None;
-        now.rows[0].times_none = None;
-        let fails = compare(&before, &now, 1.1);
-        assert_eq!(regressions(&fails), [("counter", &[Regression::Fails][..])]);
-    }
-
-    #[test]
-    fn what_is_no_longer_judged_is_said() {
-        let before = run(2.0, &[("half", false, 4.0, 9)]);
-        let mut now = before.clone();
-        now.rows[0].wrong = None;
-        let comparison = compare(&before, &now, 1.1);
-        assert!(
-            comparison
-                .to_string()
-                .contains("1 rows that the baseline judged")
-        );
-        assert!(!comparison.is_worse());
+    fn allowed(&self, now: &BenchRow) -> f64 {
+        match now.is_floor() {
+            true => 1.0 + 2.0 * (self.ratio - 1.0),
+            false => self.ratio,
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::{BenchReport, BenchRow};
 
 type Column = (&'static str, fn(&BenchRow) -> String);
 
-const COLUMNS: [Column; 22] = [
+const COLUMNS: [Column; 23] = [
     ("scene", |row| row.scene.clone()),
     ("method", |row| row.method.clone()),
     ("width", |row| row.size[0].to_string()),
@@ -19,6 +19,7 @@ const COLUMNS: [Column; 22] = [
     ("frame_ms_iqr", |row| optional(row.frame_ms_iqr)),
     ("times_none", |row| optional(row.times_none)),
     ("build_ms", |row| optional(row.build_ms)),
+    ("first_frame_ms", |row| optional(row.first_frame_ms)),
     ("gpu_ms", |row| optional(row.gpu_ms)),
     ("wrong", |row| optional(row.wrong)),
     ("ambiguous", |row| optional(row.ambiguous)),

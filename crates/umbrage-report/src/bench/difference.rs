@@ -30,6 +30,25 @@ impl std::fmt::Debug for Difference {
     }
 }
 
+/// A difference picture as the page has it: an indexed PNG file, small enough to lie in it.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// The file.
+    pub png: Vec<u8>,
+}
+
+impl std::fmt::Debug for Picture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [width, height] = self.size;
+        write!(f, "Picture({width}x{height})")
+    }
+}
+
+/// Wider pictures are made smaller.
+const WIDEST: u32 = 480;
+
 /// Why there is no picture.
 #[derive(Debug, Error)]
 pub enum DifferenceError {
@@ -87,13 +106,21 @@ impl Difference {
         Ok(Self { size, pixels })
     }
 
-    /// Width and height.
-    pub fn size(&self) -> [u32; 2] {
-        self.size
+    /// Made smaller where it is too wide for the page, and encoded.
+    ///
+    /// # Errors
+    /// A picture without pixels.
+    pub fn picture(&self) -> Result<Picture, DifferenceError> {
+        let small = self.at_most(WIDEST);
+        let png = small.png()?;
+        Ok(Picture {
+            size: small.size,
+            png,
+        })
     }
 
     /// As it is, or smaller by the whole factor that brings it to `max_width` or below.
-    pub fn at_most(&self, max_width: u32) -> Self {
+    fn at_most(&self, max_width: u32) -> Self {
         let factor = self.size[0].div_ceil(max_width.max(1)).max(1);
         let size = self.size.map(|side| side.div_ceil(factor));
         let mut pixels = vec![0; size[0] as usize * size[1] as usize];
@@ -106,10 +133,7 @@ impl Difference {
     }
 
     /// As an indexed PNG file.
-    ///
-    /// # Errors
-    /// A picture without pixels.
-    pub fn png(&self) -> Result<Vec<u8>, DifferenceError> {
+    fn png(&self) -> Result<Vec<u8>, DifferenceError> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, self.size[0], self.size[1]);
         encoder.set_color(ColorType::Indexed);
@@ -172,10 +196,19 @@ mod tests {
         let picture = Difference::new([100, 60], &[1.0; 6000], &wrong, &[1; 6000]).unwrap();
         for width in [100, 50, 33, 7, 1, 0] {
             let small = picture.at_most(width);
-            assert!(small.size()[0] <= width.max(1));
+            assert!(small.size[0] <= width.max(1));
             let reds = small.pixels.iter().filter(|&&p| p > AMBIGUOUS).count();
             assert_eq!(reds, 1, "at width {width}");
         }
+    }
+
+    #[test]
+    fn a_picture_is_narrow_enough_for_the_page() {
+        let picture = Difference::new([1000, 2], &[1.0; 2000], &[0; 2000], &[0; 2000])
+            .and_then(|difference| difference.picture())
+            .unwrap();
+        assert_eq!(picture.size, [334, 1]);
+        assert_eq!(decoded(&picture.png).0.width, 334);
     }
 
     #[test]
@@ -188,7 +221,7 @@ mod tests {
         assert!(
             Difference::new([0, 0], &[], &[], &[])
                 .unwrap()
-                .png()
+                .picture()
                 .is_err()
         );
     }

@@ -104,7 +104,10 @@ Others have open ones.</dd></div>\
 <div><dt>Floor</dt><dd>Method none: the same frame, fully lit, without shadows. \
 \u{d7} none is a frame time as a multiple of it; over all views, the geometric mean.</dd></div>\
 <div><dt>Times</dt><dd>Medians of whole frames after one that warms up. \
-Whiskers reach from the fastest to the slowest frame.</dd></div>\
+Whiskers reach from the fastest to the slowest frame. First: that one, in which everything that is \
+kept is made.</dd></div>\
+<div><dt>Volumes</dt><dd>CPU time of the shadow volumes: made anew, in the first frame; or, where \
+time runs on from frame to frame, the median of bringing them up to date.</dd></div>\
 </dl></section>";
 
 #[cfg(test)]

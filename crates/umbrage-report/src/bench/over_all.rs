@@ -22,6 +22,15 @@ pub struct OverAll {
     pub wrong: Option<u64>,
     /// Views in which it has a frame time.
     pub views: usize,
+    /// Of those, views in which the oracle judged it.
+    pub judged: usize,
+}
+
+impl OverAll {
+    /// Whether it has a time in each of `views` views, was judged in all, and nothing was wrong.
+    pub(super) fn is_faultless_in(&self, views: usize) -> bool {
+        self.wrong == Some(0) && self.views == views && self.judged == views
+    }
 }
 
 /// Summaries, in order of first use.
@@ -39,6 +48,9 @@ pub fn over_all(report: &BenchReport) -> Vec<OverAll> {
             wrong_ppm: rows().filter_map(|row| row.wrong_ppm).reduce(|a, b| a + b),
             wrong: rows().filter_map(|row| row.wrong).reduce(|a, b| a + b),
             views: rows().filter(|row| row.frame_ms.is_some()).count(),
+            judged: rows()
+                .filter(|row| row.frame_ms.is_some() && row.wrong.is_some())
+                .count(),
         }
     };
     report.methods().into_iter().map(of).collect()
@@ -69,5 +81,20 @@ mod tests {
         assert_eq!((half.wrong, half.wrong_ppm), (Some(12), Some(12.0)));
         let floor = all.iter().find(|one| one.method == "none").unwrap();
         assert_eq!((floor.wrong, floor.views), (None, 2));
+        assert_eq!((half.judged, floor.judged), (2, 0));
+    }
+
+    #[test]
+    fn a_view_without_a_verdict_is_not_without_fault() {
+        let mut report = BenchReport::default();
+        for scene in ["a", "b"] {
+            let mut row = BenchRow::new("counter", (scene, "auto", [8, 8]));
+            row.set_frame_times(&[1.0]);
+            row.set_errors(0, 0, 64);
+            report.push(row);
+        }
+        assert!(over_all(&report)[0].is_faultless_in(2));
+        report.rows[1].wrong = None;
+        assert!(!over_all(&report)[0].is_faultless_in(2));
     }
 }

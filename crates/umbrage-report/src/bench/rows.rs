@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Difference, Machine};
+use super::{Machine, Picture};
 
 /// One run of `umbrage bench`.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -13,6 +13,11 @@ use super::{Difference, Machine};
 pub struct BenchReport {
     /// The command line that made it.
     pub command: String,
+    /// Options that decide what is measured, beside scene, camera, size and method, in one spelling.
+    /// Reports with others are not comparable; empty where an older version wrote none.
+    pub settings: String,
+    /// Whether the oracle was asked.
+    pub oracle: bool,
     /// When the run began: RFC 3339, UTC ([`rfc3339`](super::rfc3339)).
     pub when: String,
     /// Where it ran.
@@ -56,8 +61,13 @@ pub struct BenchRow {
     pub camera: String,
     /// Whole frame, median over the repeats; null where the method failed.
     pub frame_ms: Option<f64>,
-    /// Of that, the CPU's part that depends on lights and casters.
+    /// Shadow volumes, on the CPU: made anew, as the first frame does, which is not timed; where
+    /// time runs on (`--play`), brought up to date, median over the repeats. Null for a method
+    /// without volumes.
     pub build_ms: Option<f64>,
+    /// The whole first frame, which warms up: everything that is kept is made in it.
+    #[serde(default)]
+    pub first_frame_ms: Option<f64>,
     /// Null on an adapter without timestamps.
     pub gpu_ms: Option<f64>,
     /// Pixel-lights where the oracle disagrees; null where it was not asked.
@@ -98,12 +108,12 @@ pub struct BenchRow {
     /// What a reader should know of this row; may be empty.
     #[serde(default)]
     pub note: String,
-    /// Why there are no figures; null where there are.
+    /// Why there are no figures, or no errors; null where nothing failed.
     #[serde(default)]
     pub failed: Option<String>,
-    /// Where the method was wrong.
+    /// Where the method was wrong, encoded once: the page is written after every view.
     #[serde(skip)]
-    pub difference: Option<Difference>,
+    pub difference: Option<Picture>,
 }
 
 impl BenchRow {
@@ -144,6 +154,24 @@ impl BenchRow {
         self.samples = Some(samples);
         // Without samples nothing can be wrong.
         self.wrong_ppm = Some(wrong as f64 * 1e6 / samples.max(1) as f64);
+    }
+
+    /// Whether it promises that none is wrong, and some are.
+    pub fn breaks_promise(&self) -> bool {
+        self.exact && self.wrong.is_some_and(|wrong| wrong > 0)
+    }
+
+    /// In words: the method, and the view.
+    pub fn name(&self) -> String {
+        name(&self.method, &self.scene, &self.camera, self.size)
+    }
+
+    /// Adds to what a reader should know.
+    pub fn add_note(&mut self, note: &str) {
+        if !self.note.is_empty() {
+            self.note += "; ";
+        }
+        self.note += note;
     }
 
     /// Whether it belongs to that scene, camera and size.
@@ -208,6 +236,11 @@ impl BenchReport {
     }
 }
 
+/// A row, in words.
+pub(super) fn name(method: &str, scene: &str, camera: &str, [width, height]: [u32; 2]) -> String {
+    format!("{method} in {scene}, camera {camera}, {width}x{height}")
+}
+
 /// Of sorted values, with linear interpolation between neighbours.
 fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
@@ -237,6 +270,7 @@ mod tests {
         for key in [
             "frame_ms",
             "build_ms",
+            "first_frame_ms",
             "gpu_ms",
             "wrong",
             "ambiguous",
@@ -250,7 +284,9 @@ mod tests {
         }
         assert_eq!(row["size"], serde_json::json!([64, 48]));
         assert!(!row.contains_key("difference"));
-        for key in ["command", "when", "machine", "complete", "repeat", "views"] {
+        for key in [
+            "command", "settings", "oracle", "when", "machine", "complete", "repeat", "views",
+        ] {
             assert!(json.get(key).is_some(), "{key}");
         }
     }

@@ -6,7 +6,7 @@ use super::{BenchReport, BenchRow, View};
 use crate::figure::{count_or_dash, figure_or_dash};
 use crate::{Table, grouped};
 
-/// Tables of all views; why a method failed stands in its last column.
+/// Tables of all views; why a method failed, or what else should be known, is in the last column.
 pub fn terminal(report: &BenchReport) -> String {
     let mut text = String::new();
     for view in &report.views {
@@ -36,7 +36,8 @@ fn table(report: &BenchReport, view: &View) -> Table {
         "method",
         "frame ms",
         "x none",
-        "build ms",
+        "volumes ms",
+        "first ms",
         "gpu ms",
         "wrong",
         "ppm",
@@ -50,6 +51,7 @@ fn table(report: &BenchReport, view: &View) -> Table {
             figure_or_dash(row.frame_ms),
             times.unwrap_or_default(),
             figure_or_dash(row.build_ms),
+            figure_or_dash(row.first_frame_ms),
             figure_or_dash(row.gpu_ms),
             count_or_dash(row.wrong),
             figure_or_dash(row.wrong_ppm),
@@ -60,11 +62,20 @@ fn table(report: &BenchReport, view: &View) -> Table {
     table
 }
 
+/// Longer remarks are cut; files have them whole.
+const LONGEST_REMARK: usize = 64;
+
 fn remark(row: &BenchRow) -> String {
-    match &row.failed {
+    let text = match &row.failed {
         Some(why) => format!("failed: {why}"),
-        None if row.exact && row.wrong.is_some_and(|wrong| wrong > 0) => "must be 0".to_owned(),
-        None => String::new(),
+        None if row.breaks_promise() && row.note.is_empty() => "must be 0".to_owned(),
+        None if row.breaks_promise() => format!("must be 0; {}", row.note),
+        None => row.note.clone(),
+    };
+    let line: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(LONGEST_REMARK) {
+        Some((end, _)) => format!("{}\u{2026}", &line[..end]),
+        None => line,
     }
 }
 
@@ -111,6 +122,11 @@ mod tests {
         assert!(terminal(&report).contains("must be 0"));
         report.rows[0].set_errors(0, 0, 64);
         assert!(!terminal(&report).contains("must be 0"));
+        report.rows[0].note = "maps: 84 of 471 lights cached".into();
+        assert!(terminal(&report).contains("84 of 471 lights cached"));
+        report.rows[0].note = "\u{e9}".repeat(200);
+        let text = terminal(&report);
+        assert!(text.contains('\u{2026}') && text.lines().all(|line| line.chars().count() < 160));
     }
 
     #[test]

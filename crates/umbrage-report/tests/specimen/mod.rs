@@ -1,6 +1,6 @@
 //! A report of invented figures, plausible in size: for looking at the page, and for its tests.
 
-use umbrage_report::bench::{BenchReport, BenchRow, Difference, Machine};
+use umbrage_report::bench::{BenchReport, BenchRow, Difference, Machine, Picture};
 
 /// (method, exact, build ms, GPU ms at a megapixel and a hundred lights, wrong ppm, MiB).
 const METHODS: [(&str, bool, f64, f64, f64, f64); 15] = [
@@ -52,6 +52,7 @@ pub(crate) fn specimen() -> BenchReport {
             version: "0.1.0".into(),
         },
         complete: true,
+        oracle: true,
         repeat: 5,
         ..BenchReport::default()
     };
@@ -84,6 +85,7 @@ fn row(
     let frame = floor + shadows + build;
     row.set_frame_times(&[0.97, 0.99, 1.0, 1.03, 1.09].map(|wobble| frame * wobble));
     row.build_ms = Some(build);
+    row.first_frame_ms = Some(frame + build + 20.0);
     row.gpu_ms = Some(floor + shadows);
     row.gpu_bytes = Some((mib * 1_048_576.0 * lights as f64 / 200.0) as u64);
     let samples = (megapixels * 1e6 * lights as f64 * 0.011) as u64;
@@ -110,7 +112,7 @@ fn row(
 }
 
 /// Rings and stripes, with errors along their edges: the more, the higher `ppm`.
-fn difference(size: [u32; 2], ppm: f64) -> Difference {
+fn difference(size: [u32; 2], ppm: f64) -> Picture {
     let [width, height] = size.map(|side| side as usize);
     let (mut grey, mut wrong, mut ambiguous) = (vec![], vec![], vec![]);
     let reach = ppm.max(1.0).log10() as f32 * 0.012;
@@ -130,5 +132,7 @@ fn difference(size: [u32; 2], ppm: f64) -> Difference {
             ambiguous.push(u32::from(edge < 0.004 && (x * 7 + y * 3) % 5 == 0));
         }
     }
-    Difference::new(size, &grey, &wrong, &ambiguous).unwrap()
+    Difference::new(size, &grey, &wrong, &ambiguous)
+        .and_then(|difference| difference.picture())
+        .unwrap()
 }

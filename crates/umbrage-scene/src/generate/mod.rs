@@ -49,29 +49,41 @@ const FIELD: [Key; 3] = [
     key("seed", 0, u64::MAX, 1),
 ];
 
+/// A generator with the values of its keys.
+enum World {
+    City([u64; 4]),
+    Soup([u64; 3]),
+    Field([u64; 3]),
+}
+
+fn parse(spec: &str) -> Result<World, SceneError> {
+    let (name, query) = spec.split_once('?').unwrap_or((spec, ""));
+    match name {
+        "city" => values(name, query, &CITY).map(World::City),
+        "soup" => values(name, query, &SOUP).map(World::Soup),
+        "field" => values(name, query, &FIELD).map(World::Field),
+        _ => Err(SceneError::UnknownGenerator {
+            name: name.to_owned(),
+            known: "city, soup, field".to_owned(),
+        }),
+    }
+}
+
+/// Whether a specification names a world, without building it.
+pub(crate) fn check(spec: &str) -> Result<(), SceneError> {
+    parse(spec).map(|_| ())
+}
+
 /// Builds the world that a specification names (without its `gen:`).
 pub(crate) fn generate(spec: &str, progress: &dyn Progress) -> Result<Scene, SceneError> {
-    let (name, query) = spec.split_once('?').unwrap_or((spec, ""));
-    let mut scene = match name {
-        "city" => {
-            let [triangles, lights, seed, moon] = values(name, query, &CITY)?;
+    let mut scene = match parse(spec)? {
+        World::City([triangles, lights, seed, moon]) => {
             city::build(triangles, lights as usize, seed, moon == 1, progress)
         }
-        "soup" => {
-            let [triangles, lights, seed] = values(name, query, &SOUP)?;
+        World::Soup([triangles, lights, seed]) => {
             soup::build(triangles as usize, lights as usize, seed)
         }
-        "field" => {
-            let [n, lights, seed] = values(name, query, &FIELD)?;
-            field::build(n as u32, lights as usize, seed, progress)
-        }
-        _ => {
-            let known = "city, soup, field".to_owned();
-            return Err(SceneError::UnknownGenerator {
-                name: name.to_owned(),
-                known,
-            });
-        }
+        World::Field([n, lights, seed]) => field::build(n as u32, lights as usize, seed, progress),
     };
     scene.name = format!("gen:{spec}");
     scene.report.nodes = scene.instances.len() as u64;

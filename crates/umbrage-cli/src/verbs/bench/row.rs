@@ -6,7 +6,7 @@ use umbrage_core::volume::Volumes;
 use umbrage_lab::lab::{Lab, Method};
 use umbrage_lab::picture::Lit;
 use umbrage_lab::stage::{Stage, StageLight};
-use umbrage_report::bench::{BenchRow, Difference};
+use umbrage_report::bench::{BenchRow, Difference, DifferenceError, Picture};
 use umbrage_truth::{ErrorMap, Oracle, Verdicts};
 
 use super::interrupt::Interrupt;
@@ -69,20 +69,37 @@ fn fill(
     let (lit, stage) = (lit?, &*task.stage);
     let timed: Vec<f64> = lab.frames[1..].iter().map(|frame| frame.frame).collect();
     row.set_frame_times(&timed);
-    row.build_ms = method.recipe().map(|_| lab.times.volumes_first);
+    row.first_frame_ms = Some(lab.times.frame_first);
+    row.build_ms = method.recipe().map(|_| match task.step_s > 0.0 {
+        true => lab.times.volumes,
+        false => lab.times.volumes_first,
+    });
     row.gpu_ms = lab.gpu().timestamp_ns.map(|_| lab.times.gpu());
     let volumes = 4 * (lab.volumes.quads.len() + lab.plan.caps.len()) as u64;
     row.gpu_bytes = Some(volumes + lab.held.gpu_bytes);
     row.note = lab.held.note.clone();
     if timed.len() < task.repeat {
-        let short = format!("{} of {} frames, for time", timed.len(), task.repeat);
-        row.note = match row.note.is_empty() {
-            true => short,
-            false => format!("{}; {short}", row.note),
+        let cause = match task.interrupt.came() {
+            true => "interrupted",
+            false => "for time",
         };
+        row.add_note(&format!(
+            "{} of {} frames, {cause}",
+            timed.len(),
+            task.repeat
+        ));
     }
     let Some(Judge { oracle, verdicts }) = judge else {
         return Ok(());
+    };
+    if task.interrupt.came() {
+        row.add_note("not judged, interrupted");
+        return Ok(());
+    }
+    let lit = match task.step_s > 0.0 {
+        // The last frame shows a later moment than the oracle knows.
+        true => lab.render(stage, lights, view, method, 0)?,
+        false => lit,
     };
     lab.prepare(stage, lights, view, method);
     let mask = lab.mask(stage, lights, view)?;
@@ -92,11 +109,14 @@ fn fill(
     let found = verdicts.judge(oracle, &mask, &skipped);
     row.set_errors(found.wrong, found.ambiguous, found.samples);
     let map = verdicts.error_map(&mask, &skipped);
-    row.difference = difference(&lit, &map);
+    match difference(&lit, &map) {
+        Ok(picture) => row.difference = Some(picture),
+        Err(why) => row.add_note(&why.to_string()),
+    }
     Ok(())
 }
 
-fn difference(lit: &Lit, map: &ErrorMap) -> Option<Difference> {
+fn difference(lit: &Lit, map: &ErrorMap) -> Result<Picture, DifferenceError> {
     let grey: Vec<f32> = lit
         .to_rgb8()
         .chunks_exact(3)
@@ -111,6 +131,5 @@ fn difference(lit: &Lit, map: &ErrorMap) -> Option<Difference> {
             .map(|&count| u32::from(count))
             .collect::<Vec<_>>()
     };
-    // All three have one value a pixel of this view.
-    Difference::new(map.size, &grey, &wide(&map.wrong), &wide(&map.ambiguous)).ok()
+    Difference::new(map.size, &grey, &wide(&map.wrong), &wide(&map.ambiguous))?.picture()
 }

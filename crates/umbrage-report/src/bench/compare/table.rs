@@ -1,6 +1,7 @@
 //! A comparison as a table for the terminal: a heading a view, a line a method, a count below.
 
 use super::{Change, Comparison, Measure, Regression};
+use crate::bench::rows::name;
 use crate::figure::{count_or_dash, figure};
 use crate::{Table, grouped};
 
@@ -11,9 +12,41 @@ impl Regression {
             Self::LessExact => "LESS EXACT",
             Self::PromiseBroken => "MUST BE 0",
             Self::Fails => "FAILS",
+            Self::NotJudged => "NOT JUDGED",
+            Self::OtherWorkload => "OTHER WORKLOAD",
             Self::Missing => "MISSING",
         }
     }
+}
+
+/// Rows that a summary names.
+const NAMED: usize = 3;
+
+impl Comparison {
+    /// In one line: how many rows are worse, and the first of them with what is.
+    pub fn summary(&self) -> String {
+        let worse: Vec<&Change> = self.worse().collect();
+        let named = |one: &&Change| {
+            let row = name(&one.method, &one.scene, &one.camera, one.size);
+            format!("{row} ({})", names(one))
+        };
+        let named: Vec<String> = worse.iter().take(NAMED).map(named).collect();
+        let rows = if worse.len() == 1 { "row" } else { "rows" };
+        let more = match worse.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!("; and {more} more"),
+        };
+        let count = worse.len();
+        format!(
+            "{count} {rows} worse than the baseline: {}{more}",
+            named.join("; ")
+        )
+    }
+}
+
+fn names(change: &Change) -> String {
+    let names: Vec<&str> = change.regressions.iter().map(|one| one.name()).collect();
+    names.join(", ")
 }
 
 impl std::fmt::Display for Comparison {
@@ -43,15 +76,11 @@ impl std::fmt::Display for Comparison {
             table.row(cells(change));
         }
         write!(f, "{table}")?;
-        let worse = self
-            .changes
-            .iter()
-            .filter(|one| !one.regressions.is_empty());
         let unjudged = self
             .changes
             .iter()
             .filter(|one| matches!(one.wrong, [Some(_), None]));
-        let (worse, rows) = (worse.count() as u64, self.changes.len() as u64);
+        let (worse, rows) = (self.worse().count() as u64, self.changes.len() as u64);
         let allowed = figure(self.ratio);
         writeln!(
             f,
@@ -59,6 +88,16 @@ impl std::fmt::Display for Comparison {
             grouped(worse),
             grouped(rows)
         )?;
+        if self.same_machine {
+            let allowed = figure(1.0 + 2.0 * (self.ratio - 1.0));
+            writeln!(
+                f,
+                "none itself is compared in ms: the machine is the same (ratio {allowed} allowed)"
+            )?;
+        }
+        if !self.judged {
+            return writeln!(f, "Errors were not compared: this run asked no oracle");
+        }
         match unjudged
             .filter(|one| !one.regressions.contains(&Regression::Missing))
             .count()
@@ -88,11 +127,9 @@ fn cells(change: &Change) -> [String; 8] {
         }
         None => Default::default(),
     };
-    let names: Vec<&str> = change.regressions.iter().map(|one| one.name()).collect();
-    let remark = if change.new && names.is_empty() {
-        "new".to_owned()
-    } else {
-        names.join(", ")
+    let remark = match change.new && change.regressions.is_empty() {
+        true => "new".to_owned(),
+        false => names(change),
     };
     let [was, is] = change.wrong.map(count_or_dash);
     [

@@ -16,7 +16,7 @@ pub(super) fn head(report: &BenchReport, scenes: &[&str]) -> String {
     let broken: Vec<&BenchRow> = report
         .rows
         .iter()
-        .filter(|row| breaks_promise(row))
+        .filter(|row| row.breaks_promise())
         .collect();
     if let Some(first) = broken.first() {
         html += &format!(
@@ -55,7 +55,7 @@ fn extent(report: &BenchReport, scenes: &[&str]) -> String {
     }
     text += ".";
     let all = over_all(report);
-    let complete = |one: &&OverAll| one.wrong == Some(0) && one.views == report.views.len();
+    let complete = |one: &&OverAll| one.is_faultless_in(report.views.len());
     let timed = all
         .iter()
         .filter(complete)
@@ -69,10 +69,6 @@ fn extent(report: &BenchReport, scenes: &[&str]) -> String {
         );
     }
     text
-}
-
-pub(super) fn breaks_promise(row: &BenchRow) -> bool {
-    row.exact && row.wrong.is_some_and(|wrong| wrong > 0)
 }
 
 fn plural(count: usize, noun: &str) -> String {

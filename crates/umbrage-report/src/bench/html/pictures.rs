@@ -1,12 +1,9 @@
 //! Difference pictures of a view, side by side.
 
 use super::view_name;
-use crate::bench::{BenchReport, BenchRow, Difference, View};
+use crate::bench::{BenchReport, BenchRow, Picture, View};
 use crate::grouped;
 use crate::page::{data_uri, escape};
-
-/// Wider pictures are made smaller; the worst pixel of a block stays.
-const WIDEST: u32 = 480;
 
 /// A grid of pictures; nothing where no row has one.
 pub(super) fn pictures(report: &BenchReport, view: &View) -> String {
@@ -29,23 +26,19 @@ pub(super) fn pictures(report: &BenchReport, view: &View) -> String {
     )
 }
 
-fn picture(row: &BenchRow, difference: &Difference) -> String {
-    let small = difference.at_most(WIDEST);
-    let [width, height] = small.size();
+fn picture(row: &BenchRow, difference: &Picture) -> String {
+    let [width, height] = difference.size;
     let count = |value: Option<u64>, word: &str| match value {
         Some(value) => format!("{} {word}", grouped(value)),
         None => format!("{word} not counted"),
     };
     let (wrong, ambiguous) = (count(row.wrong, "wrong"), count(row.ambiguous, "ambiguous"));
     let method = escape(&row.method);
-    let image = match small.png() {
-        Ok(png) => format!(
-            "<img src=\"{}\" width=\"{width}\" height=\"{height}\" \
-             alt=\"{method}: {wrong}, {ambiguous}\">",
-            data_uri("image/png", &png)
-        ),
-        Err(error) => format!("<p class=\"warning\">{}</p>", escape(&error.to_string())),
-    };
+    let image = format!(
+        "<img src=\"{}\" width=\"{width}\" height=\"{height}\" \
+         alt=\"{method}: {wrong}, {ambiguous}\">",
+        data_uri("image/png", &difference.png)
+    );
     format!(
         "<figure data-method=\"{method}\">{image}<figcaption><b>{method}</b> {wrong}, {ambiguous}\
          </figcaption></figure>"
