@@ -1,12 +1,13 @@
 //! `--actor`: a second scene to place in the first, from text.
 //!
-//! Takes `FILE?key=value&...`, as generated worlds are written; gives a file and a placement. Every
-//! message says which key, and what would have been right.
+//! Takes `FILE?key=value&...`, as generated worlds are written; gives a file and a placement. The
+//! first question mark of a generated world is its own. Every message says which key, and what would
+//! have been right.
 
 use std::str::FromStr;
 
 use umbrage_scene::rig::Placement;
-use umbrage_scene::{Scene, SceneError};
+use umbrage_scene::{LoadReport, Scene, SceneError};
 
 use crate::progress::Bar;
 use crate::values::Point;
@@ -25,8 +26,13 @@ impl FromStr for ActorChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // The last one: a generated world has a question mark of its own.
-        let (file, keys) = text.rsplit_once('?').unwrap_or((text, ""));
+        // A generated world has a question mark of its own.
+        let own = text.find('?').filter(|_| text.starts_with("gen:"));
+        let start = own.map_or(0, |own| own + 1);
+        let (file, keys) = match text[start..].rfind('?') {
+            Some(at) => (&text[..start + at], &text[start + at + 1..]),
+            None => (text, ""),
+        };
         if file.is_empty() {
             return Err(format!("expected a file, and after a ? any of {KEYS}"));
         }
@@ -67,14 +73,23 @@ impl FromStr for ActorChoice {
     }
 }
 
-/// Opens a scene with actors in it.
+/// Opens a scene with actors in it, and says what was odd about it.
 pub(crate) fn open(spec: &str, actors: &[ActorChoice], bar: &Bar) -> Result<Scene, SceneError> {
     let mut scene = umbrage_scene::open(spec, bar)?;
     for actor in actors {
         let placed = umbrage_scene::open(&actor.file, bar)?;
         scene.place(placed, &actor.placement);
     }
+    for oddity in oddities(&scene.report) {
+        bar.say(&format!("{}: {oddity}", scene.name));
+    }
     Ok(scene)
+}
+
+/// What loading skipped or repaired: a few words each.
+pub(crate) fn oddities(report: &LoadReport) -> Vec<String> {
+    let words = |(name, count): (&str, u64)| format!("{}: {count}", name.replace('_', " "));
+    report.oddities().into_iter().map(words).collect()
 }
 
 #[cfg(test)]
@@ -98,10 +113,16 @@ mod tests {
             speed: 40.0,
         };
         assert_eq!(full.placement, expected);
-        assert_eq!(
-            parse("gen:field?n=2?scale=2").unwrap().file,
-            "gen:field?n=2"
-        );
+        for (text, file, scale) in [
+            ("gen:field", "gen:field", 1.0),
+            ("gen:field?n=2", "gen:field?n=2", 1.0),
+            ("gen:field?n=2?scale=2", "gen:field?n=2", 2.0),
+            ("gen:field??scale=2", "gen:field?", 2.0),
+        ] {
+            let actor = parse(text).unwrap();
+            let found = (actor.file.as_str(), actor.placement.scale);
+            assert_eq!(found, (file, scale), "{text}");
+        }
     }
 
     #[test]

@@ -100,7 +100,17 @@ pub(crate) struct InspectArgs {
     /// A .glb, .gltf or .obj file, or gen:NAME?key=value&...
     pub(crate) scene: String,
     #[command(flatten)]
-    pub(crate) common: Common,
+    pub(crate) results: ResultArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
+    /// CPU threads [default: all cores]
+    #[arg(long, help_heading = "Run", value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// Changes nothing here, as --range
+    #[arg(long, help_heading = IGNORED, value_name = "scene|N[:seed]|FILE.json")]
+    pub(crate) lights: Option<LightChoice>,
+    #[command(flatten)]
+    pub(crate) ignored: Ignored,
 }
 
 const INSPECT_EXAMPLES: &str = "\
@@ -127,7 +137,7 @@ pub(crate) struct CheckArgs {
 const CHECK_EXAMPLES: &str = "\
 A pixel-light on which method and oracle differ is ambiguous if the oracle's own verdict turns
 when the eye ray moves by the stated tolerance; else it is wrong. Exit code 1 if any is wrong
-and the method is an exact one.
+and the method is an exact one, or its layers are within what the method's mask can represent.
 
 Examples:
   umbrage check map.glb
@@ -145,7 +155,25 @@ pub(crate) struct VolumesArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) instructions: Option<Instructions>,
     #[command(flatten)]
-    pub(crate) common: Common,
+    pub(crate) results: ResultArgs,
+    #[command(flatten)]
+    pub(crate) world: WorldArgs,
+    /// Lights, as for render
+    #[arg(
+        long,
+        help_heading = "World",
+        value_name = "scene|N[:seed]|FILE.json",
+        default_value = "scene"
+    )]
+    pub(crate) lights: LightChoice,
+    /// Runs that times are medians over, after one warm-up
+    #[arg(long, help_heading = "Run", value_name = "N", default_value = "5")]
+    pub(crate) repeat: NonZeroUsize,
+    /// CPU threads [default: all cores]
+    #[arg(long, help_heading = "Run", value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    pub(crate) ignored: Ignored,
 }
 
 const VOLUMES_EXAMPLES: &str = "\
@@ -300,7 +328,32 @@ impl ResultArgs {
     }
 }
 
-/// Options of every verb that takes a scene.
+const IGNORED: &str = "Accepted and ignored";
+
+/// Common options that verbs which draw nothing accept, so that scripts can pass the same ones to
+/// every verb, and do not look at.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = IGNORED)]
+pub(crate) struct Ignored {
+    /// Changes nothing here
+    #[arg(long, value_name = "WxH")]
+    pub(crate) size: Option<Size>,
+    /// Changes nothing here
+    #[arg(
+        long,
+        value_name = "N|NAME|auto|x,y,z,tx,ty,tz[,fovy_deg]",
+        allow_hyphen_values = true
+    )]
+    pub(crate) camera: Option<CameraChoice>,
+    /// Changes nothing here
+    #[arg(long, value_name = "NAME")]
+    pub(crate) method: Option<Method>,
+    /// Changes nothing here
+    #[arg(long, value_name = "auto|NAME|cpu", value_parser = adapter)]
+    pub(crate) adapter: Option<AdapterChoice>,
+}
+
+/// Options of the verbs that draw a scene.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Common {
     #[command(flatten)]
@@ -359,8 +412,9 @@ pub(crate) struct WorldArgs {
     /// precision [default: near the scene]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) origin: Option<Point>,
-    /// Which vertices are one: those at the same place, or those within a tolerance, which are moved
-    /// onto each other; the oracle sees them moved
+    /// Which vertices of what never moves are one: those at the same place, or those within a
+    /// tolerance, which are moved onto each other; the oracle sees them moved. What moves is never
+    /// welded by tolerance
     #[arg(long, value_name = "exact|METRES", default_value = "exact", value_parser = weld)]
     pub(crate) weld: f32,
     /// Keep the built world in this file: saved if it does not exist, else mapped, in milliseconds.
@@ -370,14 +424,16 @@ pub(crate) struct WorldArgs {
     pub(crate) file: Option<PathBuf>,
     /// Place a second file in the scene, once or many times: it stands at=X,Y,Z, turned about +Y by
     /// turn=DEGREES, scale=S times its size, and walks along its own heading (+Z before the turn)
-    /// at speed=METRES a second; it plays its first animation. Its lights and cameras are left out
+    /// at speed=METRES a second; it plays its first animation. Its lights and cameras are left out. A
+    /// generated world has a ? of its own first: gen:field?n=2?scale=2, or gen:field??scale=2
     #[arg(
         long = "actor",
         value_name = "FILE?at=X,Y,Z&turn=DEG&scale=S&speed=M_PER_S"
     )]
     pub(crate) actors: Vec<ActorChoice>,
     /// When: everything animated, and every --actor, is posed as it is this many seconds on.
-    /// Animations loop
+    /// Animations loop. All frames of render, check and bench draw this one moment, but for those of
+    /// bench --play, which begin with it
     #[arg(long, value_name = "SECONDS", default_value = "0", allow_hyphen_values = true, value_parser = time)]
     pub(crate) time: f64,
 }
@@ -407,7 +463,8 @@ pub(crate) struct ViewArgs {
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunArgs {
     /// What masks leave of a light in its shadow: nothing; an ambient term, in one more draw a
-    /// light; or half of it. Other methods know black only
+    /// light; or half of it. Other methods know black only. It is for pictures: check, which asks
+    /// only where light is, takes black alone, and render --mask-out writes the same with all
     #[arg(long, value_enum, default_value_t = Shadows::Black)]
     pub(crate) shadows: Shadows,
     /// Frames that times are medians over, after one warm-up

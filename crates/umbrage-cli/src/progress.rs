@@ -9,7 +9,10 @@ use umbrage_scene::Progress;
 
 /// A bar that goes from stage to stage; invisible with `--quiet` and where no one watches.
 #[derive(Debug)]
-pub(crate) struct Bar(ProgressBar);
+pub(crate) struct Bar {
+    bar: ProgressBar,
+    quiet: bool,
+}
 
 impl Bar {
     pub(crate) fn new(quiet: bool) -> Self {
@@ -23,7 +26,14 @@ impl Bar {
         if seen {
             bar.enable_steady_tick(Duration::from_millis(120));
         }
-        Self(bar)
+        Self { bar, quiet }
+    }
+
+    /// A line for whoever reads standard error, watched or not; none with `--quiet`.
+    pub(crate) fn say(&self, line: &str) {
+        if !self.quiet {
+            self.bar.suspend(|| eprintln!("{line}"));
+        }
     }
 }
 
@@ -36,15 +46,15 @@ impl Progress for Bar {
         };
         // The templates are constants that the test below parses.
         if let Ok(style) = ProgressStyle::with_template(template) {
-            self.0.set_style(style);
+            self.bar.set_style(style);
         }
-        self.0.set_length(total);
-        self.0.set_position(0);
-        self.0.set_message(name.to_owned());
+        self.bar.set_length(total);
+        self.bar.set_position(0);
+        self.bar.set_message(name.to_owned());
     }
 
     fn advance(&self, done: u64) {
-        self.0.set_position(done);
+        self.bar.set_position(done);
     }
 }
 
@@ -62,9 +72,9 @@ impl Steps {
     pub(crate) fn new(quiet: bool, steps: usize) -> Self {
         let bar = Bar::new(quiet);
         if let Ok(style) = ProgressStyle::with_template(TIMED) {
-            bar.0.set_style(style);
+            bar.bar.set_style(style);
         }
-        bar.0.set_length(steps as u64 * Self::PARTS);
+        bar.bar.set_length(steps as u64 * Self::PARTS);
         Self {
             bar,
             begun: AtomicU64::new(0),
@@ -74,20 +84,20 @@ impl Steps {
     /// Says what is being done.
     pub(crate) fn now(&self, scene: &str, what: &str) {
         let name = scene.rsplit('/').next().unwrap_or(scene);
-        self.bar.0.set_message(format!("{name}: {what}"));
+        self.bar.bar.set_message(format!("{name}: {what}"));
     }
 
     /// A share of the step at hand is done; later calls with less change nothing.
     pub(crate) fn within(&self, share: f64) {
         let part = (share.clamp(0.0, 1.0) * Self::PARTS as f64) as u64;
         let done = self.begun.load(Ordering::Relaxed) + part;
-        self.bar.0.set_position(done.max(self.bar.0.position()));
+        self.bar.bar.set_position(done.max(self.bar.bar.position()));
     }
 
     /// The step at hand is done.
     pub(crate) fn step(&self) {
         let done = self.begun.fetch_add(Self::PARTS, Ordering::Relaxed) + Self::PARTS;
-        self.bar.0.set_position(done);
+        self.bar.bar.set_position(done);
     }
 }
 
@@ -95,7 +105,7 @@ const TIMED: &str = "{msg:<44} {wide_bar} {percent:>3} %, {eta} left";
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
@@ -108,8 +118,8 @@ mod tests {
         let bar = Bar::new(true);
         bar.stage("read", 10);
         bar.advance(4);
-        assert!(bar.0.is_hidden());
-        assert_eq!((bar.0.position(), bar.0.length()), (4, Some(10)));
+        assert!(bar.bar.is_hidden());
+        assert_eq!((bar.bar.position(), bar.bar.length()), (4, Some(10)));
     }
 
     #[test]
@@ -119,11 +129,11 @@ mod tests {
         steps.now("a/b.glb", "oracle");
         steps.within(0.5);
         steps.within(0.25);
-        assert_eq!(steps.bar.0.position(), 500);
+        assert_eq!(steps.bar.bar.position(), 500);
         steps.step();
         steps.within(0.1);
         assert_eq!(
-            (steps.bar.0.position(), steps.bar.0.length()),
+            (steps.bar.bar.position(), steps.bar.bar.length()),
             (1100, Some(4000))
         );
     }

@@ -19,6 +19,10 @@ pub(crate) struct RenderReport {
     pub(crate) frame_ms: f64,
     /// By name of the stage, CPU and GPU.
     pub(crate) stages_ms: BTreeMap<String, f64>,
+    /// Of the GPU: volumes, and what the method keeps for itself.
+    pub(crate) gpu_bytes: u64,
+    /// What a reader of the method's figures must know; empty if nothing.
+    pub(crate) note: String,
     pub(crate) totals: RenderTotals,
     pub(crate) lights: Vec<LightReport>,
 }
@@ -121,6 +125,10 @@ pub(crate) struct InspectReport {
     pub(crate) face_pointer_bytes_per_triangle: f64,
     /// That the scene brings itself.
     pub(crate) lights: u64,
+    /// What loading skipped or repaired, and how often.
+    pub(crate) oddities: Vec<String>,
+    /// A sentence for each of the first of these.
+    pub(crate) oddity_notes: Vec<String>,
     /// A `--world` file mapped, fingerprint and checksums included; null where it was built.
     pub(crate) open_ms: Option<f64>,
     /// Of a mapped world, `load` apart: when it was saved.
@@ -171,12 +179,16 @@ pub(crate) struct CheckReport {
     /// facing it or not; no other can be wrong. Null for methods without such a limit, and at lower
     /// resolutions.
     pub(crate) unrepresentable: Option<u64>,
+    /// Of `wrong`, those not among them: the method fails by one. Null as `unrepresentable` is.
+    pub(crate) wrong_representable: Option<u64>,
     pub(crate) tolerance_px: f64,
     pub(crate) tolerance_depth: f64,
     /// Whether every light's volume is closed, counted in integers.
     pub(crate) closed: bool,
     pub(crate) worst: Vec<WorstPixel>,
     pub(crate) lights_by_path: LightsByPath,
+    /// What a reader of the method's figures must know; empty if nothing.
+    pub(crate) note: String,
 }
 
 /// A wrong pixel-light.

@@ -4,6 +4,7 @@
 //! scene lacks (a camera, say) is refused here, with a list of what it has.
 
 use std::borrow::Cow;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
@@ -76,7 +77,12 @@ pub(crate) fn world_step(world_file: Option<&Path>) -> &'static str {
 
 /// Makes `--threads` the size of the pool that everything here runs on.
 pub(crate) fn use_threads(run: &RunArgs) {
-    if let Some(threads) = run.threads {
+    limit_threads(run.threads);
+}
+
+/// The same for verbs that draw nothing.
+pub(crate) fn limit_threads(threads: Option<NonZeroUsize>) {
+    if let Some(threads) = threads {
         // Fails only if the pool is in use already, and this is the first thing a verb does.
         let _ = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())
@@ -84,8 +90,9 @@ pub(crate) fn use_threads(run: &RunArgs) {
     }
 }
 
-/// The scenery with the casting rules of its materials: what is inside and outside depends neither
-/// on `--casters` nor on `--time`, so neither do seeded lights nor the automatic camera.
+/// The scenery (where all moves: as it is at time zero) with the casting rules of its materials: what
+/// is inside and outside depends neither on `--casters` nor on `--time`, so seeded lights do not
+/// either, nor, given lights that stand, the automatic camera.
 fn as_materials_say(stage: &Stage) -> Cow<'_, Mesh> {
     let rule = |&m: &u32| match stage.scene.materials[m as usize].double_sided {
         true => Casting::Both,
@@ -241,6 +248,8 @@ fn diagonal(mesh: &Mesh) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::{Cli, Verb};
+    use clap::Parser;
 
     #[test]
     fn a_camera_becomes_the_view_that_looks_the_same_way() {
@@ -269,6 +278,29 @@ mod tests {
         );
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("0 (porch)"), "{error}");
+    }
+
+    /// Where everything moves, the mesh at time zero stands for the scenery.
+    #[test]
+    fn seeded_lights_and_the_automatic_camera_stay_as_time_goes_on() {
+        let man = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../data/actors/cesium_man.glb"
+        );
+        let [begin, later] = ["0", "0.7"].map(|time| {
+            let line = [
+                "umbrage", "render", man, "--lights", "5", "--camera", "auto",
+            ];
+            let line = line.into_iter().chain(["--time", time, "--quiet"]);
+            let Ok(Verb::Render(args)) = Cli::try_parse_from(line).map(|cli| cli.verb) else {
+                panic!("not render")
+            };
+            Setting::new(&args.scene, &args.common).unwrap()
+        });
+        assert_ne!(begin.stage.mesh.positions, later.stage.mesh.positions);
+        assert_eq!(begin.lights, later.lights);
+        let of = |view: &View| (view.eye, view.forward, view.near);
+        assert_eq!(of(&begin.view), of(&later.view));
     }
 
     #[test]

@@ -50,6 +50,8 @@ fn render_reports_and_writes_a_picture() {
     assert_eq!(report["totals"]["quads"], sum("quads"));
     assert!(sum("quads") > 0);
     assert_eq!(report["method"], "counter");
+    assert!(report["gpu_bytes"].as_u64() >= Some(4 * sum("quads")));
+    assert_eq!(report["note"], "");
     assert_eq!(report["size"], serde_json::json!([128, 96]));
     assert_eq!(png_size(&picture), (128, 96));
     assert_eq!(folder.files(), ["masks", "soup.png"]);
@@ -123,6 +125,75 @@ fn check_counts_what_no_shadows_get_wrong() {
     worst
         .iter()
         .for_each(|pixel| assert_keys(pixel, "x y light"));
+}
+
+/// What a method says about itself is for whoever reads its figures.
+#[test]
+fn methods_note_what_readers_must_know() {
+    let report = |verb: &str| {
+        let options = [verb, SOUP, "--method", "shadowmap-256", "--repeat", "1"];
+        json(0, &[&options[..], &SMALL].concat())
+    };
+    let render = report("render");
+    assert!(render["gpu_bytes"].as_u64() > Some(256 * 256));
+    for report in [render, report("check")] {
+        let note = report["note"].as_str().expect("a note");
+        assert!(note.contains("cached"), "{note}");
+    }
+}
+
+/// Common options may be passed to every verb; what a verb does not use is not looked at.
+#[test]
+fn verbs_that_draw_nothing_accept_common_options_and_look_at_none() {
+    let common = [
+        "--size",
+        "64x48",
+        "--camera",
+        "no-such-camera",
+        "--method",
+        "mask-alpha",
+        "--adapter",
+        "no-such-adapter",
+        "--threads",
+        "2",
+        "--casters",
+        "both",
+        "--range",
+        "auto",
+    ];
+    let lights = ["--lights", "no-such-file.json"];
+    json(0, &[&["inspect", SOUP][..], &common, &lights].concat());
+    let volumes = ["volumes", SOUP, "--repeat", "1"];
+    json(0, &[&volumes[..], &common].concat());
+    refused(2, &[&volumes[..], &lights].concat());
+    for verb in ["inspect", "volumes"] {
+        refused(2, &[verb, SOUP, "--no-cull", "all"]);
+        refused(2, &[verb, SOUP, "--shadows", "ambient"]);
+        let help = umbrage(&[verb, "--help"]);
+        assert!(String::from_utf8_lossy(&help.stdout).contains("Accepted and ignored"));
+    }
+}
+
+/// What a loader skipped is said once, of scenes and of actors, and not with `--quiet`.
+#[test]
+fn oddities_are_said() {
+    let folder = Folder::new("oddities");
+    let file = folder.path("odd.obj");
+    std::fs::write(&file, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n").expect("an OBJ file");
+    let actor = [SOUP, "--actor", &file];
+    for scene in [&[file.as_str()][..], &actor] {
+        let inspect = [&["inspect"], scene].concat();
+        assert_eq!(json(0, &inspect)["oddities"][0], "skipped faces: 1");
+        let said = umbrage(&inspect);
+        let said = String::from_utf8_lossy(&said.stderr).into_owned();
+        assert!(said.ends_with(": skipped faces: 1\n"), "{said:?}");
+        let quiet = umbrage(&[&inspect[..], &["--quiet"]].concat());
+        assert!(quiet.status.success() && quiet.stderr.is_empty());
+    }
+    assert_eq!(
+        json(0, &["inspect", SOUP])["oddities"],
+        serde_json::json!([])
+    );
 }
 
 #[test]
@@ -257,8 +328,21 @@ fn masks_say_what_they_cannot_represent_and_others_make_none() {
     assert!(
         screen["unrepresentable"].as_u64().expect("a count") >= screen["wrong"].as_u64().unwrap()
     );
+    assert_eq!(screen["wrong_representable"], 0);
     assert_eq!(check("mask-alpha")["wrong"], 0);
-    assert!(check("half")["unrepresentable"].is_null());
+    let half = check("half");
+    assert!(half["unrepresentable"].is_null() && half["wrong_representable"].is_null());
+    // Lit or not does not hang on it, and so it is not asked for in vain.
+    let ambient = [
+        "check",
+        SOUP,
+        "--method",
+        "mask-alpha",
+        "--shadows",
+        "ambient",
+    ];
+    let message = refused(2, &ambient);
+    assert!(message.contains("--shadows"), "{message}");
     let options = ["render", SOUP, "--shadows", "attenuated"];
     let message = refused(2, &options);
     assert!(message.contains("counter makes no mask"), "{message}");
@@ -354,6 +438,14 @@ fn actors_stand_in_a_scene_and_walk_with_time() {
         json(0, &[&[verb, field][..], &common].concat())
     };
     let alone = json(0, &["inspect", field]);
+    // Only what never moves is welded by tolerance.
+    let welded = |weld: &str| {
+        let inspect = ["inspect", field, "--actor", &actor, "--weld", weld];
+        json(0, &inspect)["welded_vertices"]
+            .as_u64()
+            .expect("a count")
+    };
+    assert_eq!(welded("exact") - welded("1e4"), 9 * 9 - 1);
     let both = placed("inspect", "0");
     let more = both["triangles"].as_u64().unwrap() - alone["triangles"].as_u64().unwrap();
     assert_eq!(more, 4672);

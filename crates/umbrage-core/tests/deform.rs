@@ -198,6 +198,27 @@ fn only_lights_around_a_deforming_object_are_built_again() {
     assert!(some > 50 && some < 50 * lights.len() / 4, "{some}");
 }
 
+/// Whoever hands over the same positions every frame pays for nothing.
+#[test]
+fn a_deformation_that_changes_nothing_builds_nothing_again() {
+    let mut world = World::build(&strewn_soup(3, 100, 0.2)).unwrap();
+    let pose = Pose::at(DVec3::new(0.5, 0.0, 0.0));
+    let id = world.insert(&hinge(), &pose).unwrap();
+    let lights = [point_light(Vec3::ZERO, 5.0)];
+    let (mut builder, mut volumes) = (builder(), Volumes::default());
+    assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 1);
+    let before = world.clone();
+    let mut same = hinge().positions;
+    same[0] = -Vec3::ZERO; // as equal as zero
+    same[6] = Vec3::splat(7.0); // no triangle uses it
+    world.deform(id, &same).unwrap();
+    assert_eq!((world.stamp, &world), (before.stamp, &before));
+    assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 0);
+    same[2].y += 0.125;
+    world.deform(id, &same).unwrap();
+    assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 1);
+}
+
 /// Two triangles that share an edge by position only.
 fn hinge() -> Mesh {
     let [a, b] = [Vec3::ZERO, Vec3::X];

@@ -79,6 +79,20 @@ impl Stage {
         Ok(())
     }
 
+    /// [`Stage::mesh`] as it is at a time.
+    pub(crate) fn mesh_at(&self, time_s: f64) -> Mesh {
+        let posed = self.scene.posed(time_s);
+        let (mut mesh, mut placed) = (self.mesh.clone(), Vec::new());
+        for actor in &self.actors {
+            let instance = &self.scene.instances[actor.instance as usize];
+            let of = &self.scene.meshes[instance.mesh as usize];
+            posed.positions(instance, of, self.soup.origin, &mut placed);
+            let vertices = actor.vertices.start as usize..actor.vertices.end as usize;
+            mesh.positions[vertices].copy_from_slice(&placed);
+        }
+        mesh
+    }
+
     /// For each triangle of the world its triangle in `soup`; none for padding, and for objects
     /// that are no actors.
     pub fn surfaces(&self) -> Vec<Option<u32>> {
@@ -105,7 +119,7 @@ impl Stage {
 }
 
 /// What of the flattened scene never moves: its vertices and triangles, which come first.
-pub(crate) fn fixed_part(scene: &Scene, soup: &umbrage_scene::Soup) -> [usize; 2] {
+pub fn fixed_part(scene: &Scene, soup: &umbrage_scene::Soup) -> [usize; 2] {
     let moving = scene.moving();
     let moves = |instance: &u32| moving[*instance as usize];
     let vertices = (0..).zip(&soup.vertices).filter(|(i, _)| !moves(i));

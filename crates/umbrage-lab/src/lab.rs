@@ -416,6 +416,12 @@ impl Lab {
         }
     }
 
+    /// GPU memory of the last frame: volumes, and what the technique holds.
+    pub fn gpu_bytes(&self) -> u64 {
+        let indices = self.volumes.quads.len() + self.plan.caps.len();
+        4 * indices as u64 + self.held.gpu_bytes
+    }
+
     /// What happens to surfaces before the near plane on this device.
     pub fn near_clip(&self) -> NearClip {
         self.gpu.near_clip()

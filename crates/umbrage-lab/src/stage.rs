@@ -12,6 +12,8 @@ use umbrage_scene::rig::Posed;
 use umbrage_scene::{AlphaMode, LightKind, Scene, SceneError, Soup};
 
 use crate::actors::{self, Actor};
+
+pub use crate::actors::fixed_part;
 use crate::saved_world::{WorldFileError, open_or_build};
 
 /// Which casting rule the scene's casters follow.
@@ -160,7 +162,7 @@ impl Stage {
             triangles: soup.triangles.clone(),
             casting: casting(&scene, &soup, casters),
         };
-        let [vertices, fixed] = actors::fixed_part(&scene, &soup);
+        let [vertices, fixed] = fixed_part(&scene, &soup);
         let mut never_moves = first(&mesh, vertices, fixed);
         if weld_m != 0.0 {
             let mut welded = never_moves.into_owned();
@@ -186,10 +188,12 @@ impl Stage {
         })
     }
 
-    /// The triangles that never move; all of them, where they stand, if every one may.
+    /// The triangles that never move; all of them, where they stand at time zero, if every one may.
+    /// So it does not depend on [`Stage::set_time`].
     pub fn scenery(&self) -> Cow<'_, Mesh> {
-        match actors::fixed_part(&self.scene, &self.soup) {
-            [_, 0] => Cow::Borrowed(&self.mesh),
+        match fixed_part(&self.scene, &self.soup) {
+            [_, 0] if self.time_s == 0.0 => Cow::Borrowed(&self.mesh),
+            [_, 0] => Cow::Owned(self.mesh_at(0.0)),
             [vertices, triangles] => first(&self.mesh, vertices, triangles),
         }
     }

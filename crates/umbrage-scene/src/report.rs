@@ -12,7 +12,7 @@ pub struct LoadReport {
     pub skipped_primitives: u64,
     /// Vertices or indices left over that make no whole triangle.
     pub leftover_vertices: u64,
-    /// Normal or texture coordinate arrays left out: wrong count, wrong type.
+    /// Arrays of normals, texture coordinates, joints or weights left out: wrong count, wrong type.
     pub dropped_attributes: u64,
     /// Normals that were not finite or of zero length; the face's normal stands in.
     pub repaired_normals: u64,
@@ -42,7 +42,7 @@ pub struct LoadReport {
     /// Animation channels left out: morph weights, nodes that are not in the scene or have a matrix,
     /// values that cannot be read.
     pub skipped_channels: u64,
-    /// Animations and skins left out because their JSON lacks what glTF demands.
+    /// Animations left out because their JSON lacks what glTF demands, and all skins if one does.
     pub skipped_rigs: u64,
     /// Primitives with morph targets, drawn without them.
     pub ignored_morphs: u64,
@@ -77,35 +77,77 @@ impl LoadReport {
 
     /// Every count that is not zero, with its name: a table for a person.
     pub fn oddities(&self) -> Vec<(&'static str, u64)> {
+        let mut counts = self.clone();
+        let counts = counts.counts().map(|(name, count)| (name, *count));
+        counts.into_iter().filter(|&(_, n)| n > 0).collect()
+    }
+
+    /// Adds what was found in a file that is placed in this one, whose name is `name`.
+    pub(crate) fn add(&mut self, name: &str, mut other: LoadReport) {
+        self.nodes += other.nodes;
+        for ((_, ours), (_, theirs)) in self.counts().into_iter().zip(other.counts()) {
+            *ours += *theirs;
+        }
+        for sentence in other.notes {
+            self.note(|| format!("{name}: {sentence}"));
+        }
+    }
+
+    /// Every count of oddities.
+    fn counts(&mut self) -> [(&'static str, &mut u64); 25] {
         [
-            ("skipped_primitives", self.skipped_primitives),
-            ("leftover_vertices", self.leftover_vertices),
-            ("dropped_attributes", self.dropped_attributes),
-            ("repaired_normals", self.repaired_normals),
-            ("repaired_transforms", self.repaired_transforms),
-            ("skipped_cameras", self.skipped_cameras),
-            ("skipped_lights", self.skipped_lights),
-            ("repaired_lights", self.repaired_lights),
-            ("renamed_lights", self.renamed_lights),
-            ("repaired_materials", self.repaired_materials),
-            ("missing_images", self.missing_images),
-            ("unreadable_images", self.unreadable_images),
-            ("ignored_skins", self.ignored_skins),
-            ("repaired_weights", self.repaired_weights),
-            ("dropped_influences", self.dropped_influences),
-            ("skipped_channels", self.skipped_channels),
-            ("skipped_rigs", self.skipped_rigs),
-            ("ignored_morphs", self.ignored_morphs),
-            ("ignored_instancing", self.ignored_instancing),
-            ("hidden_nodes", self.hidden_nodes),
-            ("missing_libraries", self.missing_libraries),
-            ("missing_materials", self.missing_materials),
-            ("skipped_faces", self.skipped_faces),
-            ("skipped_statements", self.skipped_statements),
-            ("ignored_chunks", self.ignored_chunks),
+            ("skipped_primitives", &mut self.skipped_primitives),
+            ("leftover_vertices", &mut self.leftover_vertices),
+            ("dropped_attributes", &mut self.dropped_attributes),
+            ("repaired_normals", &mut self.repaired_normals),
+            ("repaired_transforms", &mut self.repaired_transforms),
+            ("skipped_cameras", &mut self.skipped_cameras),
+            ("skipped_lights", &mut self.skipped_lights),
+            ("repaired_lights", &mut self.repaired_lights),
+            ("renamed_lights", &mut self.renamed_lights),
+            ("repaired_materials", &mut self.repaired_materials),
+            ("missing_images", &mut self.missing_images),
+            ("unreadable_images", &mut self.unreadable_images),
+            ("ignored_skins", &mut self.ignored_skins),
+            ("repaired_weights", &mut self.repaired_weights),
+            ("dropped_influences", &mut self.dropped_influences),
+            ("skipped_channels", &mut self.skipped_channels),
+            ("skipped_rigs", &mut self.skipped_rigs),
+            ("ignored_morphs", &mut self.ignored_morphs),
+            ("ignored_instancing", &mut self.ignored_instancing),
+            ("hidden_nodes", &mut self.hidden_nodes),
+            ("missing_libraries", &mut self.missing_libraries),
+            ("missing_materials", &mut self.missing_materials),
+            ("skipped_faces", &mut self.skipped_faces),
+            ("skipped_statements", &mut self.skipped_statements),
+            ("ignored_chunks", &mut self.ignored_chunks),
         ]
-        .into_iter()
-        .filter(|&(_, count)| count > 0)
-        .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_placed_adds_every_count_and_names_itself() {
+        let mut one = LoadReport::default();
+        assert_eq!(one.oddities(), []);
+        for (number, (_, count)) in (1..).zip(one.counts()) {
+            *count = number;
+        }
+        let counts = one.oddities();
+        assert_eq!(counts.len(), one.counts().len());
+        one.note(|| "a light is of no known type".to_owned());
+        let mut both = one.clone();
+        both.add("man", one.clone());
+        for ((name, n), (found, twice)) in counts.iter().zip(both.oddities()) {
+            assert_eq!((*name, 2 * n), (found, twice));
+        }
+        assert_eq!(both.notes[1], "man: a light is of no known type");
+        for _ in 0..LoadReport::MAX_NOTES {
+            both.add("man", one.clone());
+        }
+        assert_eq!(both.notes.len(), LoadReport::MAX_NOTES);
     }
 }

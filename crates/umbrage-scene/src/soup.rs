@@ -3,8 +3,8 @@
 //! Takes a [`Scene`]; gives a [`Soup`]. Transforms are applied in f64 and rounded to f32 once,
 //! after the origin is subtracted, so an identity transform keeps the bits of the file and a world
 //! far from zero keeps its detail. A transform that mirrors reverses the winding, so that the front
-//! of a triangle stays its front; what mirrors does so by how it stands at rest, so that triangles
-//! are the same at all times.
+//! of a triangle stays its front; what mirrors does so by how it stands at rest (or, without volume
+//! then, as soon as it has one), so that triangles are the same at all times.
 
 use std::ops::Range;
 
@@ -37,6 +37,8 @@ pub struct Soup {
     pub uvs: Vec<[Vec2; 3]>,
     /// The vertices of each of [`Scene::instances`], in the order of its mesh.
     pub vertices: Vec<Range<u32>>,
+    /// Whether the winding of each of [`Scene::instances`] is reversed.
+    pub mirrored: Vec<bool>,
 }
 
 impl Scene {
@@ -64,7 +66,7 @@ impl Scene {
     /// As [`Scene::soup`].
     pub fn soup_posed(&self, posed: &Posed, at: Option<DVec3>) -> Result<Soup, SceneError> {
         let used = self.check_used()?;
-        let (rest, moving) = (self.rest(), self.moving());
+        let moving = self.moving();
         let mut order: Vec<usize> = (0..used.len()).collect();
         order.sort_by_key(|&i| moving[i]);
         let triangles = self.flattened_triangles() as usize;
@@ -75,6 +77,7 @@ impl Scene {
         let mut soup = Soup {
             origin: at.unwrap_or_else(|| origin(&used, &moving, posed)),
             vertices: vec![0..0; used.len()],
+            mirrored: self.mirrored(),
             ..Soup::default()
         };
         self.reserve(&mut soup.positions, vertices)?;
@@ -98,7 +101,7 @@ impl Scene {
                 index: index as u32,
                 mesh,
                 placing,
-                mirrored: rest.placing(instance, mesh).mirrors(),
+                mirrored: soup.mirrored[index],
                 base: base as u32,
             };
             append(&mut soup, &part, [shaded, textured]);
@@ -124,15 +127,15 @@ impl Soup {
         posed: &Posed,
         instances: impl Iterator<Item = (u32, Range<usize>)>,
     ) {
-        let rest = scene.rest();
         let mut placed = Vec::new();
         for (index, range) in instances {
             let Some(instance) = scene.instances.get(index as usize) else {
                 continue;
             };
-            let (Some(mesh), Some(vertices)) = (
+            let (Some(mesh), Some(vertices), Some(&mirrored)) = (
                 scene.meshes.get(instance.mesh as usize),
                 self.vertices.get(index as usize),
+                self.mirrored.get(index as usize),
             ) else {
                 continue;
             };
@@ -146,7 +149,7 @@ impl Soup {
                     index,
                     mesh,
                     placing,
-                    mirrored: rest.placing(instance, mesh).mirrors(),
+                    mirrored,
                     base: vertices.start,
                 };
                 let triangles = self.triangles[range.clone()].iter();

@@ -418,10 +418,78 @@ fn what_cannot_be_followed_is_left_out_and_counted() {
     assert_eq!(positions(&scene, 0.0)[0], Vec3::splat(7.0)); // where its own node puts it
     let scene = load("/scenes/0/nodes", json!([0]));
     assert_eq!(scene.report.ignored_skins, 1);
-    // A skin without what glTF demands costs all that moves, and nothing else.
-    let scene = load("/animations/0/samplers/0", json!({"input": 4}));
+}
+
+/// JSON that lacks what glTF demands costs the animation that it is in, or all skins, and nothing
+/// else.
+#[test]
+fn one_broken_animation_costs_itself_and_a_broken_skin_the_skins() {
+    let (mut root, binary) = strip("LINEAR", &[0.0, 90.0]);
+    let good = root["animations"][0].clone();
+    let mut broken = good.clone();
+    broken["samplers"][0]
+        .as_object_mut()
+        .unwrap()
+        .remove("input");
+    root["animations"] = json!([broken, good]);
+    let scene = load_glb(&root, &binary).unwrap();
+    assert_eq!(scene.report.oddities(), [("skipped_rigs", 1)]);
+    assert!(scene.report.notes[0].contains("1 animations"));
+    assert_near(&positions(&scene, 0.5), &bent(45.0));
+
+    root["animations"].as_array_mut().unwrap().truncate(1);
+    let scene = load_glb(&root, &binary).unwrap();
+    assert_eq!(scene.rig.as_ref().unwrap().skins.len(), 1);
+    assert_near(&positions(&scene, 0.9), &bent(0.0));
+
+    root["skins"][0]["joints"] = json!("all");
+    let scene = load_glb(&root, &binary).unwrap();
     assert_eq!(scene.report.skipped_rigs, 2);
-    assert!(scene.rig.is_none() && scene.instances.len() == 1);
+    assert_eq!(positions(&scene, 0.0)[0], Vec3::splat(7.0));
+
+    // What is broken elsewhere is an error as before.
+    root["meshes"] = json!(3);
+    assert!(matches!(
+        load_glb(&root, &binary),
+        Err(SceneError::Json { .. })
+    ));
+}
+
+#[test]
+fn an_actors_oddities_are_the_scenes() {
+    let (mut root, binary) = strip("LINEAR", &[0.0, 90.0]);
+    root["animations"][0]["samplers"][0] = json!({"output": 5});
+    let odd = load_glb(&root, &binary).unwrap();
+    let mut scene = umbrage_scene::open("gen:field?n=2&lights=0", &()).unwrap();
+    scene.place(odd, &Placement::default());
+    assert_eq!(scene.report.oddities(), [("skipped_rigs", 1)]);
+}
+
+/// What grows from nothing shows its front once it is there, mirrored or not.
+#[test]
+fn what_has_no_size_at_rest_is_wound_as_it_first_has_one() {
+    let (mut root, mut binary) = strip("LINEAR", &[0.0; 3]);
+    let output = root["bufferViews"][5]["byteOffset"].as_u64().unwrap() as usize;
+    root["nodes"] = json!([{"mesh": 0, "scale": [0, 0, 0]}]);
+    root["scenes"][0]["nodes"] = json!([0]);
+    root["skins"] = json!([]);
+    root["animations"][0]["channels"][0]["target"] = json!({"node": 0, "path": "scale"});
+    root["accessors"][5]["type"] = json!("VEC3");
+    for x in [1.0f32, -1.0] {
+        // Nothing, still nothing, and then something.
+        let keys = [[0.0; 3], [0.0; 3], [x, 1.0, 1.0]];
+        binary[output..output + 36].copy_from_slice(&floats(keys.as_flattened()));
+        let scene = load_glb(&root, &binary).unwrap();
+        let mut soup = scene.soup().unwrap();
+        soup.repose(&scene, &scene.posed(1.75), std::iter::once((0, 0..2)));
+        let [a, b, c] = soup.triangles[0].map(|v| soup.positions[v as usize]);
+        let front = (b - a).cross(c - a).z;
+        // As it would be without a mirror: the strip's first triangle has its corners on one line.
+        let [d, e, f] = soup.triangles[1].map(|v| soup.positions[v as usize]);
+        let other = (e - d).cross(f - d).z;
+        assert_eq!(front, 0.0);
+        assert!(other > 0.0, "{x}: {other}");
+    }
 }
 
 #[test]

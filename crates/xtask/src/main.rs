@@ -22,8 +22,8 @@ cargo xtask <task>
           all its lights to target/demo/.
   test    Everything that CI runs, in its order, stopping at the first failure: driver,
           browser (installed likewise; without one the tests of HTML reports are skipped),
-          formatting, clippy, tests with every validator on (dev profile), GPU against oracle
-          at speed (release profile), every bench once, documentation.
+          formatting, clippy, tests with every validator on (dev profile), every bench once,
+          documentation.
   lint    The quick half of `test`: formatting and clippy.
 
 More than one task may be named; they run in order. Exit codes: 0 done, 1 a step failed,

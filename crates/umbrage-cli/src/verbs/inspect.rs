@@ -5,8 +5,9 @@ use std::time::Instant;
 
 use umbrage_core::Mesh;
 use umbrage_core::volume::Crow;
+use umbrage_core::world::WorldError;
 use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
-use umbrage_lab::stage::{StageError, casting};
+use umbrage_lab::stage::{StageError, casting, fixed_part};
 use umbrage_scene::Progress;
 
 use crate::actor;
@@ -14,29 +15,30 @@ use crate::args::InspectArgs;
 use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{BuildMs, EdgesByTriangles, InspectReport};
-use crate::setting::{use_threads, world_step};
+use crate::setting::{limit_threads, world_step};
 use umbrage_report::Table;
 
 /// Loads, builds, counts.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    use_threads(&args.common.run);
-    let bar = Bar::new(args.common.results.quiet);
+    limit_threads(args.threads);
+    let bar = Bar::new(args.results.quiet);
     let start = Instant::now();
-    let options = &args.common.world;
+    let options = &args.world;
     let scene = actor::open(&args.scene, &options.actors, &bar)?;
     let posed = scene.posed(options.time);
     let soup = scene.soup_posed(&posed, options.origin.map(|point| point.0))?;
     let load = start.elapsed().as_secs_f64() * 1e3;
 
-    let world_file = args.common.world.file.as_deref();
+    let world_file = options.file.as_deref();
     bar.stage(world_step(world_file), 0);
+    let [fixed, _] = fixed_part(&scene, &soup);
     // Every triangle counts here, whatever it casts.
     let mut mesh = Mesh {
-        casting: casting(&scene, &soup, args.common.world.casters.into()),
+        casting: casting(&scene, &soup, options.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
     };
-    mesh.weld_within(args.common.world.weld)
+    weld_first(&mut mesh, fixed, options.weld)
         .map_err(|error| StageError::new(&scene, None, error.into()))?;
     let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
         .map_err(|error| StageError::new(&scene, world_file, error))?;
@@ -69,6 +71,8 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             .into(),
         face_pointer_bytes_per_triangle: per_triangle(Crow::new(&world).bytes(&world)),
         lights: scene.lights.len() as u64,
+        oddities: actor::oddities(&scene.report),
+        oddity_notes: scene.report.notes.clone(),
         open_ms: opened_in.map(|time| time.as_secs_f64() * 1e3),
         build_ms: BuildMs {
             load,
@@ -79,7 +83,18 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             total: load + times.total,
         },
     };
-    args.common.results.show(&table(&report), &report)
+    args.results.show(&table(&report), &report)
+}
+
+/// Welds the first `count` positions by tolerance, as other verbs weld what never moves.
+fn weld_first(mesh: &mut Mesh, count: usize, tolerance_m: f32) -> Result<(), WorldError> {
+    let mut fixed = Mesh {
+        positions: mesh.positions[..count].to_vec(),
+        ..Mesh::default()
+    };
+    fixed.weld_within(tolerance_m)?;
+    mesh.positions[..count].copy_from_slice(&fixed.positions);
+    Ok(())
 }
 
 fn table(report: &InspectReport) -> Table {
@@ -99,6 +114,9 @@ fn table(report: &InspectReport) -> Table {
         .count("  of 3 triangles", edges.three)
         .count("  of 4 and more", edges.more)
         .count("lights", report.lights);
+    for oddity in report.oddities.iter().chain(&report.oddity_notes) {
+        table.row(["odd", oddity]);
+    }
     let mut bytes = |name: &str, bytes: f64| {
         table.row([name, &format!("{bytes:.1}")]);
     };

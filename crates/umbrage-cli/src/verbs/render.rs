@@ -108,6 +108,8 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
         size: setting.view.size,
         frame_ms: times.frame,
         stages_ms: stages.map(|(name, ms)| (name.to_owned(), ms)).into(),
+        gpu_bytes: lab.gpu_bytes(),
+        note: lab.held.note.clone(),
         totals: RenderTotals::of(&lights, lab.uploaded),
         lights,
     }
@@ -160,7 +162,11 @@ fn table(report: &RenderReport) -> Table {
         .count("  quads drawn", totals.quads_drawn)
         .count("  cap triangles", totals.cap_triangles)
         .count("uploaded bytes", totals.uploaded_bytes)
-        .count("  of volumes", totals.uploaded_volume_bytes);
+        .count("  of volumes", totals.uploaded_volume_bytes)
+        .count("bytes on the GPU", report.gpu_bytes);
+    if !report.note.is_empty() {
+        table.row(["note", &report.note]);
+    }
     let mut costly: Vec<&LightReport> = report
         .lights
         .iter()

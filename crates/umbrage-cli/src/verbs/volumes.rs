@@ -18,9 +18,11 @@ use umbrage_lab::stage::{Stage, StageError};
 use self::methods::Method;
 use crate::args::VolumesArgs;
 use crate::error::CliError;
+use crate::progress::Bar;
 use crate::report::{VolumesLight, VolumesMethod, VolumesReport};
-use crate::setting::Setting;
+use crate::setting::{self, limit_threads, stage};
 use umbrage_report::Table;
+use umbrage_scene::Progress as _;
 
 /// Scratch that all methods share.
 #[derive(Default)]
@@ -53,14 +55,19 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
     if let Some(instructions) = args.instructions {
         instructions.0.limit();
     }
-    let setting = Setting::new(&args.scene, &args.common)?;
+    limit_threads(args.threads);
+    let bar = Bar::new(args.results.quiet);
+    let stage = stage(&args.scene, &args.world, &bar)?;
+    bar.stage("place lights", 0);
+    let stage_lights = setting::lights(&stage, &args.lights, &args.world)?;
+    drop(bar);
     // Generation alone: actors are triangles like others where they stand.
-    let flat = match setting.stage.actors.is_empty() {
+    let flat = match stage.actors.is_empty() {
         true => None,
-        false => Some(flat(&setting.stage)?),
+        false => Some(flat(&stage)?),
     };
-    let world = flat.as_ref().unwrap_or(&setting.stage.world);
-    let lights: Vec<Light> = setting.lights.iter().map(|light| light.light).collect();
+    let world = flat.as_ref().unwrap_or(&stage.world);
+    let lights: Vec<Light> = stage_lights.iter().map(|light| light.light).collect();
     let mut runs: Vec<Run> = methods::all(world)
         .into_iter()
         .map(|method| Run {
@@ -69,7 +76,7 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
             ms: Vec::new(),
         })
         .collect();
-    let repeat = args.common.run.repeat.get();
+    let repeat = args.repeat.get();
     let mut shared = Shared::default();
     for round in 0..=repeat {
         for run in &mut runs {
@@ -94,7 +101,7 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
         }
     });
     let methods: Vec<VolumesMethod> = methods.collect();
-    let detail = setting.lights.iter().enumerate().map(|(i, light)| {
+    let detail = stage_lights.iter().enumerate().map(|(i, light)| {
         let made = &runs[0].lights[i];
         let by_method = |of: fn(&Made) -> u64| -> BTreeMap<String, u64> {
             let of_run = |run: &Run| (run.method.name().to_owned(), of(&run.lights[i]));
@@ -117,7 +124,7 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
     });
     let lights_detail: Vec<VolumesLight> = detail.collect();
     let report = VolumesReport {
-        scene: setting.stage.scene.name.clone(),
+        scene: stage.scene.name.clone(),
         lights: lights.len() as u64,
         instructions: InstructionSet::in_use().name().to_owned(),
         threads: rayon::current_num_threads() as u64,
@@ -127,7 +134,7 @@ pub(crate) fn run(args: &VolumesArgs) -> Result<(), CliError> {
         methods,
         lights_detail,
     };
-    args.common.results.show(&table(&report), &report)
+    args.results.show(&table(&report), &report)
 }
 
 /// A world of everything on the stage.

@@ -65,8 +65,8 @@ impl World {
     }
 
     /// Gives an object new rest positions, one for each vertex of the mesh that was inserted, in the
-    /// object's own space; its pose stays. Refused, and nothing changed, if vertices that became one
-    /// are to part.
+    /// object's own space; its pose stays. Where they are those it has, nothing is done, and nothing
+    /// near it is built again. Refused, and nothing changed, if vertices that became one are to part.
     pub fn deform(&mut self, id: ObjectId, positions: &[Vec3]) -> Result<(), ObjectError> {
         let slot = self.slot_of(id)?;
         let object = &self.objects[slot];
@@ -85,6 +85,9 @@ impl World {
         }
         let rest = given.vertex.iter().map(|&v| positions[v as usize]);
         let rest: Vec<Vec3> = rest.collect();
+        if rest == object.rest {
+            return Ok(());
+        }
         let pose = object.pose;
         objects::check(&rest, &pose)?;
         self.objects[slot].rest = rest;

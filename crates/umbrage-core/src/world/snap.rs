@@ -59,11 +59,14 @@ impl Mesh {
 struct Grid {
     tolerance: f64,
     /// The last that was placed in each cell.
-    last: HashMap<[i64; 3], u32>,
+    last: HashMap<Cell, u32>,
     staying: Vec<Vec3>,
     /// The one placed in the same cell before.
     before: Vec<u32>,
 }
+
+/// Bits of its whole numbers in f64: what divides by a tiny tolerance overflows any integer.
+type Cell = [u64; 3];
 
 const NONE: u32 = u32::MAX;
 
@@ -78,12 +81,12 @@ impl Grid {
     }
 
     /// Wide enough that what is near a position is mostly in its own cell, in two along an axis at
-    /// most.
-    fn cell(&self, p: DVec3) -> [i64; 3] {
-        (p / (4.0 * self.tolerance))
-            .floor()
-            .to_array()
-            .map(|x| x as i64)
+    /// most: two f32 that differ by no more than the tolerance are less than 2^24 cells from zero,
+    /// where f64 tells neighbours apart. Narrow enough that few of those that stay share one.
+    fn cell(&self, p: DVec3) -> Cell {
+        let number = (p / (4.0 * self.tolerance)).floor();
+        // Adding zero turns -0 into 0.
+        number.to_array().map(|x| (x + 0.0).to_bits())
     }
 
     /// Where `p` goes: to the first that stays within the tolerance, or nowhere.
@@ -93,9 +96,9 @@ impl Grid {
         let reach = DVec3::splat(self.tolerance * 1.0001);
         let (low, high) = (self.cell(at - reach), self.cell(at + reach));
         let mut found = NONE;
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
+        for x in either(low[0], high[0]) {
+            for y in either(low[1], high[1]) {
+                for z in either(low[2], high[2]) {
                     let mut next = self.last.get(&[x, y, z]).copied().unwrap_or(NONE);
                     while next != NONE {
                         let other = self.staying[next as usize].as_dvec3();
@@ -115,5 +118,66 @@ impl Grid {
         self.before.push(before.unwrap_or(NONE));
         self.staying.push(p);
         p
+    }
+}
+
+/// Both, or the one that they are.
+fn either(low: u64, high: u64) -> impl Iterator<Item = u64> {
+    std::iter::once(low).chain((high != low).then_some(high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Most positions that one look into a cell compares with.
+    fn longest(grid: &Grid) -> usize {
+        let chain = |&last: &u32| {
+            let next = |&at: &u32| Some(grid.before[at as usize]).filter(|&next| next != NONE);
+            std::iter::successors(Some(last), next).count()
+        };
+        grid.last.values().map(chain).max().unwrap_or(0)
+    }
+
+    /// A lattice with a floor at zero and one vertex very far out.
+    fn lattice() -> Vec<Vec3> {
+        let place = |i: u32| Vec3::new((i % 40) as f32, (i / 40 % 40) as f32, (i / 1600) as f32);
+        let near = (0..64_000).map(|i| 0.1 * (place(i) - Vec3::splat(20.0)));
+        near.chain([Vec3::splat(3e38)]).collect()
+    }
+
+    #[test]
+    fn a_tiny_tolerance_compares_few_and_moves_nothing() {
+        for tolerance in [f32::from_bits(1), 1e-30, 1e-12] {
+            let mut grid = Grid::new(f64::from(tolerance));
+            for p in lattice() {
+                assert_eq!(grid.place(p), p);
+            }
+            assert_eq!(longest(&grid), 1, "{tolerance}");
+            let mut mesh = Mesh {
+                positions: lattice(),
+                ..Mesh::default()
+            };
+            assert_eq!(mesh.weld_within(tolerance), Ok(0));
+            assert_eq!(mesh.positions, lattice());
+        }
+    }
+
+    /// The count sees crowding: a cell as wide as the lattice holds what lies in it.
+    #[test]
+    fn crowded_cells_are_noticed() {
+        let mut grid = Grid::new(1e-30);
+        lattice().into_iter().for_each(|p| {
+            grid.place(p);
+        });
+        let cells = grid.staying.iter().map(|p| (p.as_dvec3() / 1.0).floor());
+        let mut crowded = Grid::new(1e-30);
+        for (number, cell) in (0..).zip(cells) {
+            let before = crowded
+                .last
+                .insert(cell.to_array().map(f64::to_bits), number);
+            crowded.before.push(before.unwrap_or(NONE));
+        }
+        assert!(longest(&crowded) >= 1000, "{}", longest(&crowded));
     }
 }

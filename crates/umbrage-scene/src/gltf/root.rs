@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use gltf::json::{self, Root, Value};
+use gltf::json::{self, Animation, Root, Value};
 
 use crate::{LoadReport, SceneError};
 
@@ -46,40 +46,61 @@ pub(super) fn parse(text: &[u8], path: &Path, report: &mut LoadReport) -> Result
     Ok(root)
 }
 
-/// Reads the text as it is, else completed, else without what moves; the first error has line and
-/// column.
+/// Reads the text as it is, else completed, else without the animations that cannot be read, else
+/// without skins too; the first error has line and column.
 fn read(text: &[u8], report: &mut LoadReport) -> Result<Root, json::Error> {
     let first = match json::deserialize::from_slice(text) {
         Ok(root) => return Ok(root),
         Err(first) => first,
     };
     let completed = json::deserialize::from_slice::<Value>(text).map(complete);
-    let Ok(completed) = completed else {
+    let Ok(mut left) = completed else {
         return Err(first);
     };
-    if let Ok(root) = json::deserialize::from_value(completed.clone()) {
+    if let Ok(root) = json::deserialize::from_value(left.clone()) {
         return Ok(root);
     }
-    let (unmoving, skipped) = unmoving(completed);
-    let root = json::deserialize::from_value(unmoving).map_err(|_| first)?;
-    report.skipped_rigs += skipped;
-    report.note(|| "animations and skins left out: some lack what glTF demands".to_owned());
+    let animations = leave_out_animations(&mut left);
+    let mut skins = 0;
+    let root = json::deserialize::from_value(left.clone()).or_else(|_| {
+        skins = leave_out_skins(&mut left);
+        json::deserialize::from_value(left)
+    });
+    let root = root.map_err(|_| first)?;
+    for (what, count) in [("animations", animations), ("skins", skins)] {
+        report.skipped_rigs += count;
+        if count > 0 {
+            report.note(|| format!("{count} {what} left out: JSON without what glTF demands"));
+        }
+    }
     Ok(root)
 }
 
-/// Without animations and skins; and how many there were.
-fn unmoving(mut root: Value) -> (Value, u64) {
-    let mut skipped = 0;
-    if let Some(root) = root.as_object_mut() {
-        for unread in ["animations", "skins"] {
-            let items = root.remove(unread);
-            skipped += items.map_or(0, |items| items.as_array().map_or(1, Vec::len) as u64);
-        }
-        for node in list(root, "nodes") {
-            node.remove("skin");
-        }
+/// Leaves out every animation that cannot be read: nothing refers to one. Gives their number.
+fn leave_out_animations(root: &mut Value) -> u64 {
+    let Some(animations) = root.get_mut("animations") else {
+        return 0;
+    };
+    let Some(items) = animations.as_array_mut() else {
+        *animations = Value::Array(vec![]);
+        return 1;
+    };
+    let before = items.len();
+    let reads = |item: &Value| json::deserialize::from_value::<Animation>(item.clone()).is_ok();
+    items.retain(reads);
+    (before - items.len()) as u64
+}
+
+/// Leaves out all skins, to which nodes refer by number. Gives their number.
+fn leave_out_skins(root: &mut Value) -> u64 {
+    let Some(root) = root.as_object_mut() else {
+        return 0;
+    };
+    for node in list(root, "nodes") {
+        node.remove("skin");
     }
-    (root, skipped)
+    let skins = root.remove("skins");
+    skins.map_or(0, |skins| skins.as_array().map_or(1, Vec::len) as u64)
 }
 
 /// Leaves out what is never read, and gives fields that may be absent a value that says so.

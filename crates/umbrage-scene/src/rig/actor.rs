@@ -1,7 +1,7 @@
 //! A scene placed in another, and walking there.
 //!
 //! Takes a scene and where it is to stand; appends its meshes, instances, materials, images and rig
-//! under a node of its own. Its lights and cameras stay behind.
+//! under a node of its own, and adds its load report. Its lights and cameras stay behind.
 
 use glam::{DAffine3, DQuat, DVec3};
 
@@ -65,6 +65,7 @@ impl Scene {
             mesh.materials.iter_mut().for_each(|m| *m += materials);
             mesh
         }));
+        self.report.add(&actor.name, actor.report);
         let rig = self.rig.get_or_insert_default();
         let root = rig.nodes.len() as u32;
         let root_node = placement.node();

@@ -87,15 +87,19 @@ impl Placing<'_> {
         }
     }
 
-    /// Whether most of it is turned inside out.
-    pub(crate) fn mirrors(&self) -> bool {
-        let mirrors = |transform: &DAffine3| transform.matrix3.determinant() < 0.0;
-        match self {
-            Self::Rigid(transform) => mirrors(transform),
-            Self::Skinned(joints) => {
-                2 * joints.iter().filter(|j| mirrors(j)).count() > joints.len()
-            }
+    /// Whether most of it is turned inside out; none if it has no volume to turn.
+    pub(crate) fn mirrors(&self) -> Option<bool> {
+        let transforms = match self {
+            Self::Rigid(transform) => std::slice::from_ref(transform),
+            Self::Skinned(joints) => joints,
+        };
+        let signs = transforms.iter().map(|t| t.matrix3.determinant());
+        let [mut inside_out, mut upright] = [0, 0];
+        for sign in signs {
+            inside_out += u32::from(sign < 0.0);
+            upright += u32::from(sign > 0.0);
         }
+        (inside_out + upright > 0).then_some(inside_out > upright)
     }
 
     /// Appends the positions of a mesh, rounded once.
@@ -143,6 +147,37 @@ impl Scene {
             .map_or_else(Posed::default, |rig| rig.posed(time_s))
     }
 
+    /// For each instance, whether it is mirrored: as it stands at rest, or where it has no volume
+    /// then, at the first key of what plays, or the first middle between two, at which it has one.
+    pub(crate) fn mirrored(&self) -> Vec<bool> {
+        let of = |posed: &Posed, instance: &Instance| {
+            let mesh = self.meshes.get(instance.mesh as usize)?;
+            posed.placing(instance, mesh).mirrors()
+        };
+        let rest = self.rest();
+        let mut found: Vec<Option<bool>> = self.instances.iter().map(|i| of(&rest, i)).collect();
+        let moving = self.moving();
+        let open = |found: &[Option<bool>]| -> Vec<usize> {
+            let open = |&i: &usize| found[i].is_none() && moving[i];
+            (0..found.len()).filter(open).collect()
+        };
+        let keys = match (&self.rig, open(&found).is_empty()) {
+            (Some(rig), false) => rig.key_times(),
+            _ => Vec::new(),
+        };
+        for time_s in keys {
+            let left = open(&found);
+            if left.is_empty() {
+                break;
+            }
+            let posed = self.posed(time_s);
+            for i in left {
+                found[i] = of(&posed, &self.instances[i]);
+            }
+        }
+        found.into_iter().map(|m| m.unwrap_or(false)).collect()
+    }
+
     /// For each instance, whether it ever moves: it is skinned, or hangs on a node that moves.
     pub fn moving(&self) -> Vec<bool> {
         let nodes = self.rig.as_ref().map_or_else(Vec::new, Rig::moving);
@@ -185,6 +220,23 @@ impl Scene {
 }
 
 impl Rig {
+    /// Times at which what plays has keys, ascending, and the middles between them: at its last key
+    /// a clip begins anew.
+    fn key_times(&self) -> Vec<f64> {
+        let playing = self.playing.iter();
+        let clips = playing.filter_map(|&c| self.clips.get(c as usize));
+        let curves = clips.flat_map(|clip| &clip.channels).map(|c| &c.curve);
+        let mut keys: Vec<f64> = curves
+            .flat_map(|curve| curve.times_s.iter().map(|&t| f64::from(t)))
+            .collect();
+        keys.sort_by(f64::total_cmp);
+        keys.dedup();
+        let between = keys.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let mut times: Vec<f64> = between.chain(keys.iter().copied()).collect();
+        times.sort_by(f64::total_cmp);
+        times
+    }
+
     fn posed(&self, time_s: f64) -> Posed {
         let mut locals: Vec<Local> = self.nodes.iter().map(|node| node.local).collect();
         let playing = self
