@@ -81,6 +81,11 @@ impl Steps {
         }
     }
 
+    /// A line for whoever reads standard error.
+    pub(crate) fn say(&self, line: &str) {
+        self.bar.say(line);
+    }
+
     /// Says what is being done.
     pub(crate) fn now(&self, scene: &str, what: &str) {
         let name = scene.rsplit('/').next().unwrap_or(scene);

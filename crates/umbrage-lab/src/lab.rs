@@ -86,6 +86,13 @@ impl Lab {
         &self.gpu
     }
 
+    /// Drops all that was built, scratch memory included: the next frame starts from nothing.
+    pub fn forget(&mut self) {
+        self.volumes = Volumes::default();
+        self.plan = FramePlan::default();
+        self.builder = VolumeBuilder::default();
+    }
+
     /// Brings volumes and plan up to date for a view. [`Lab::mask`] draws what stands in `volumes` and
     /// `plan` then; a test may change them in between.
     pub fn prepare(&mut self, stage: &Stage, lights: &[StageLight], view: &View, method: Method) {

@@ -21,6 +21,7 @@ use umbrage_lab::stage::Stage;
 use umbrage_report::bench::{self, BenchReport, Machine};
 use umbrage_truth::{Oracle, Verdicts};
 
+use crate::actor::oddities;
 use crate::args::BenchArgs;
 use crate::error::CliError;
 use crate::progress::{Bar, Steps};
@@ -102,6 +103,9 @@ fn bench_scene(
     steps.now(scene, "load");
     let quiet = Bar::new(true);
     let mut stage = stage(scene, &args.world, &quiet)?;
+    for oddity in oddities(&stage.scene.report) {
+        steps.say(&format!("{scene}: {oddity}"));
+    }
     let lights = lights(&stage, &args.lights, &args.world)?;
     let mut oracle: Option<Oracle> = None;
     for camera in args.cameras() {

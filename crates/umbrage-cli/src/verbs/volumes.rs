@@ -14,6 +14,7 @@ use umbrage_core::volume::{Chain, Quad, VolumeBuilder, Volumes, facing};
 use umbrage_core::world::{Layer, Subset, World, query};
 use umbrage_core::{Cull, Culls, InstructionSet, Light};
 use umbrage_lab::stage::{Stage, StageError};
+use umbrage_lab::timer;
 
 use self::methods::Method;
 use crate::args::VolumesArgs;
@@ -201,8 +202,7 @@ fn library(world: &World, lights: &[Light], repeat: usize) -> f64 {
 }
 
 fn median(times: &mut [f64]) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or_default()
+    timer::median(times).unwrap_or_default()
 }
 
 fn table(report: &VolumesReport) -> Table {

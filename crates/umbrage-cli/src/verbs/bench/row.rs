@@ -2,7 +2,6 @@
 
 use umbrage_core::View;
 use umbrage_core::frame::LightPath;
-use umbrage_core::volume::Volumes;
 use umbrage_lab::lab::{Lab, Method};
 use umbrage_lab::picture::Lit;
 use umbrage_lab::stage::{Stage, StageLight};
@@ -57,9 +56,9 @@ fn fill(
     let (lights, view, method) = (task.lights, task.view, task.method);
     let begin_s = task.stage.time_s;
     // What another method left is not this one's.
-    lab.volumes = Volumes::default();
+    lab.forget();
     let lit = lab.render_moving(task.stage, lights, view, method, |stage, frames| {
-        let spent: f64 = frames.iter().map(|frame| frame.frame / 1e3).sum();
+        let spent: f64 = frames.iter().skip(1).map(|frame| frame.frame / 1e3).sum();
         let late = frames.len() > 1 && (spent > f64::from(task.limit) || task.interrupt.came());
         stage.set_time(begin_s + task.step_s * frames.len() as f64)?;
         Ok::<bool, CliError>(frames.len() <= task.repeat && !late)
@@ -75,8 +74,7 @@ fn fill(
         false => lab.times.volumes_first,
     });
     row.gpu_ms = lab.gpu().timestamp_ns.map(|_| lab.times.gpu());
-    let volumes = 4 * (lab.volumes.quads.len() + lab.plan.caps.len()) as u64;
-    row.gpu_bytes = Some(volumes + lab.held.gpu_bytes);
+    row.gpu_bytes = Some(lab.gpu_bytes());
     row.note = lab.held.note.clone();
     if timed.len() < task.repeat {
         let cause = match task.interrupt.came() {

@@ -178,7 +178,10 @@ impl Technique for InLayers {
         let batches = self.placed.last().map_or(0, |p| p.batch + 1);
         TechniqueReport {
             gpu_bytes: layers + low,
-            note: format!("masks of all lights in {batches} batches"),
+            note: match batches {
+                0 | 1 => String::new(),
+                _ => format!("masks of all lights in {batches} batches"),
+            },
         }
     }
 }
