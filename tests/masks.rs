@@ -316,9 +316,19 @@ fn every_size_has_a_lower_resolution() {
 }
 
 fn rendered(site: &Site, view: &View, method: Method, application: Application) -> Lit {
+    picture(site, &lamp(), view, method, application)
+}
+
+fn picture(
+    site: &Site,
+    lights: &[StageLight],
+    view: &View,
+    method: Method,
+    application: Application,
+) -> Lit {
     let mut lab = lab();
     lab.application = application;
-    let lit = lab.render(&site.stage, &lamp(), view, method, 1);
+    let lit = lab.render(&site.stage, lights, view, method, 1);
     lab.application = Application::Black;
     lab.volumes = Volumes::default();
     lit.unwrap_or_else(|error| panic!("{}: {error}", method.name()))
@@ -384,6 +394,72 @@ fn lower_resolutions_attenuate_too() {
         );
         assert_eq!(differing(&attenuated, &half_way, 0.006), 0, "{name}");
     }
+}
+
+/// A leaning post within the range of a light at the origin, in front of a wall far beyond it, and
+/// plates beside the light, each too wide to be hidden by those before it. Seen from [`beside_the_post`],
+//// the wall beside the post is seen through the plates' volumes: in them all if `half_size` is 0.5,
+/// and out of them again if it is 0.2.
+fn post_before_a_wall(plates: u8, half_size: f32) -> Site {
+    let mut mesh = Mesh {
+        name: "post".to_owned(),
+        ..Mesh::default()
+    };
+    let upright = |x: f32, [low, high]: [f32; 2], half: f32, lean: f32| {
+        let corner = |y: f32, z: f32| Vec3::new(x, y, z);
+        [
+            corner(-half, low),
+            corner(-half, high),
+            corner(half, high + lean),
+            corner(half, low + lean),
+        ]
+    };
+    room::quad(&mut mesh, upright(-4.0, [3.4, 4.0], 3.0, 0.8), 1);
+    room::quad(&mut mesh, upright(-30.0, [-60.0, 60.0], 60.0, 0.0), 1);
+    for i in 0..plates {
+        let x = 1.0 + 0.05 * f32::from(i);
+        let half = half_size * (x + 0.05 * f32::from(i));
+        room::quad(&mut mesh, upright(-x, [-half, half], half, 0.0), 1);
+    }
+    Site::new(scene_of("post", mesh), Casters::Material)
+}
+
+fn beside_the_post(site: &Site) -> View {
+    let [eye, target] = [Vec3::new(4.0, 0.0, 8.0), Vec3::new(-4.0, 0.0, 4.0)];
+    site.look(eye, target, [331, 247])
+}
+
+#[test]
+fn masks_of_a_lower_resolution_are_normalised_beyond_the_receivers() {
+    let mut lights = staged([point(Vec3::ZERO, 10.0)]);
+    lights[0].power *= 1e3;
+    let shadowed = post_before_a_wall(6, 0.5);
+    let crossed = post_before_a_wall(1, 0.2);
+    let mut failures = Vec::new();
+    for (method, _) in low_methods() {
+        let name = method.name();
+        for (site, is_lit) in [(&shadowed, false), (&crossed, true)] {
+            let view = beside_the_post(site);
+            let picture = |method| picture(site, &lights, &view, method, Application::Black).light;
+            let (lit, found) = (picture(Method::None), picture(method));
+            let bright = lit.iter().map(|l| l.max_element()).fold(0.0, f32::max);
+            // Not a number is too bright as well.
+            let is_within = |f: Vec3, l: Vec3| (f - l).cmple(Vec3::splat(0.01 * bright)).all();
+            let pixels = found.iter().zip(&lit);
+            let brighter = pixels.filter(|(f, l)| !is_within(**f, **l)).count();
+            let other = if is_lit {
+                differing(&found, &lit, 0.01)
+            } else {
+                0
+            };
+            if brighter + other > 0 {
+                failures.push(format!(
+                    "{name}: {brighter} brighter, {other} other than lit"
+                ));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
 }
 
 #[test]

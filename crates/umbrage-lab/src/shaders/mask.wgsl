@@ -1,6 +1,10 @@
 // Rectangles over a light's rows of pixels, which change its mask in one channel and leave the
 // other channels alone: how, the blend states say that each of these goes with.
 
+// Whether a row reaches from one side of the scissor to the other, past the receivers: faces do, and
+// a mask that is read filtered is read there.
+override whole_rows: bool = false;
+
 struct Slot {
     layer: u32,
     channel: u32,
@@ -15,11 +19,22 @@ struct Varying {
     @location(0) @interpolate(flat) color: vec4f,
 }
 
+fn place(index: u32, light: u32) -> vec4f {
+    let seen = umbrage_light_corner(index, light);
+    if !whole_rows || umbrage_spans.rows == 0u {
+        return seen;
+    }
+    // Its corners as umbrage_light_corner numbers them.
+    let corner = index % 6u;
+    let right = corner == 2u || corner == 3u || corner == 5u;
+    return vec4f(select(-1.0, 1.0, right), seen.yzw);
+}
+
 // `value` in the light's channel, `other` elsewhere.
 fn rectangle(index: u32, light: u32, value: f32, other: f32) -> Varying {
     let is_ours = vec4u(0u, 1u, 2u, 3u) == vec4u(slots[light].channel);
     let color = select(vec4f(other), vec4f(value), is_ours);
-    return Varying(umbrage_light_corner(index, light), color);
+    return Varying(place(index, light), color);
 }
 
 @vertex

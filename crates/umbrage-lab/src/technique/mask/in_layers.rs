@@ -4,7 +4,9 @@
 //! made and normalised, then the batch's lights are drawn, each multiplied by its mask. At full
 //! resolution a light reads the texel of its pixel; else masks are filtered bilinearly, and nothing
 //! knows about depth: a mask bleeds over edges of the surface by up to a texel, as the paper's
-//! does. What lies outside a light's rows of texels is lit.
+//! does. Filtering looks past the tiles in which receivers were found, at a background beyond the
+//! light's range, where faces count as well: at a lower resolution a mask in floats or eight bits
+//! is started and normalised over all of the light's scissor. One from the stencil is lit there.
 
 use std::ops::Range;
 
@@ -61,7 +63,10 @@ impl InLayers {
         application: Application,
         divisor: u32,
     ) -> Result<Self, GpuError> {
-        let place = Place::Layers;
+        let place = match divisor {
+            1 => Place::Layers,
+            _ => Place::LowLayers,
+        };
         let plan = MaskPlan {
             of,
             place,

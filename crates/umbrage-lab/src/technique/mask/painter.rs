@@ -171,7 +171,7 @@ impl Rectangles {
             }),
             write_mask: match self.plan.place {
                 Place::Frame => wgpu::ColorWrites::ALPHA,
-                Place::Layers => wgpu::ColorWrites::ALL,
+                Place::Layers | Place::LowLayers => wgpu::ColorWrites::ALL,
             },
         }
     }
@@ -220,6 +220,8 @@ impl Rectangles {
             Step::Rectangle(Rectangle::Darken) => ("dark", Some(add(Dst, Zero))),
             _ => ("start", Some(add(Dst, Zero))),
         };
+        let counted = self.plan.of != Counting::Stencil;
+        let whole_rows = counted && self.plan.place == Place::LowLayers;
         let mut depth_stencil = shadows.light_depth_stencil();
         if step == Step::Rectangle(Rectangle::Darken) {
             depth_stencil.stencil.front.compare = wgpu::CompareFunction::NotEqual;
@@ -234,7 +236,10 @@ impl Rectangles {
                 vertex: wgpu::VertexState {
                     module: &self.module,
                     entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &[("whole_rows", f64::from(u8::from(whole_rows)))],
+                        ..wgpu::PipelineCompilationOptions::default()
+                    },
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState::default(),

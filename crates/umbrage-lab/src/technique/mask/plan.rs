@@ -20,6 +20,8 @@ pub(crate) enum Place {
     Frame,
     /// In channels of a texture of its own.
     Layers,
+    /// The same at a lower resolution, whose texels a light reads up to one aside of its own.
+    LowLayers,
 }
 
 /// One step.
@@ -165,7 +167,8 @@ mod tests {
         let (mut scene, mut rectangles) = (0, 0);
         for step in plan.steps() {
             match (step, place) {
-                (Step::Surface | Step::Ambient, _) | (Step::Light, Place::Layers) => scene += 1,
+                (Step::Surface | Step::Ambient, _) => scene += 1,
+                (Step::Light, Place::Layers | Place::LowLayers) => scene += 1,
                 (Step::Rectangle(_), _) | (Step::Light, Place::Frame) => rectangles += 1,
                 (Step::Stencil | Step::Start | Step::Raise | Step::Lower, _) => {}
             }
