@@ -176,6 +176,12 @@ fn from_a_side_of_a_volume_masks_count_behind_the_surface() {
     assert_eq!((found.wrong, found.unrepresentable), (0, 0));
 }
 
+/// A standpoint that shows much of the site.
+fn found_in(site: &Site, size: [u32; 2]) -> View {
+    let stand = auto_camera(&site.stage.mesh, &plain(&site.lights), 1.0, 16.0 / 9.0);
+    View::look_at(stand.eye, stand.target, 1.0, site.near(), size)
+}
+
 #[test]
 fn the_room_and_a_bundled_world_are_right_where_the_layers_fit() {
     let room = Site::new(room::scene(), Casters::Both);
@@ -190,8 +196,7 @@ fn the_room_and_a_bundled_world_are_right_where_the_layers_fit() {
         [160, 120],
     );
     let keep = Site::open("data/worlds/stormkeep.glb", Casters::Material);
-    let stand = auto_camera(&keep.stage.mesh, &plain(&keep.lights), 1.0, 16.0 / 9.0);
-    let found = View::look_at(stand.eye, stand.target, 1.0, keep.near(), [128, 72]);
+    let found = found_in(&keep, [128, 72]);
     for (site, lights, view) in [(&room, &lights, &view), (&keep, &keep.lights, &found)] {
         for method in MASKS {
             let found = outcome(site, lights, view, method);
@@ -496,5 +501,38 @@ fn what_masks_hold_is_bounded_and_reported() {
         assert!(held <= most, "{}: {held} bytes", method.name());
         assert_eq!(held == 0, most == 0, "{}", method.name());
     }
+    lab.volumes = Volumes::default();
+}
+
+#[test]
+fn a_second_renderer_is_counted_where_masks_have_one() {
+    let site = Site::open("data/worlds/stormkeep.glb", Casters::Material);
+    let view = found_in(&site, [128, 72]);
+    let mut lab = lab();
+    let mut frame = |method| {
+        lab.prepare(&site.stage, &site.lights, &view, method);
+        lab.mask(&site.stage, &site.lights, &view).expect("a mask");
+        let lights = 0..site.lights.len();
+        let planned = lab.plan.drawn().map(|(_, light)| light.quads.len()).sum();
+        let drawn: u32 = lights.map(|i| lab.quads_drawn(i)).sum();
+        (lab.uploaded, [planned, drawn as usize], lab.held.gpu_bytes)
+    };
+    let (one, counter, _) = frame(Method::Counter);
+    let half = Method::LowResolution {
+        of: Counting::Stencil,
+        divisor: Divisor::Half,
+    };
+    let (both, low, bytes) = frame(half);
+    assert!(one.volume_bytes > 0 && one.other_bytes > 0);
+    assert_eq!(both.volume_bytes, 2 * one.volume_bytes);
+    assert_eq!(both.other_bytes, 2 * one.other_bytes);
+    // The quads that are drawn are those of the lower resolution, which leaves out as many.
+    assert_eq!(low[0], counter[0]);
+    assert!(counter[1] < counter[0] && low[1] < low[0], "{low:?}");
+    assert!(low[1].abs_diff(counter[1]) < counter[1] / 4, "{low:?}");
+    let world = &site.stage.world;
+    let edges = size_of_val(&world.edges.vertices[..]) + size_of_val(&world.positions[..]);
+    let triangles = size_of_val(&world.triangles[..]);
+    assert!(bytes as usize > edges + triangles + 8 * low[0], "{bytes}");
     lab.volumes = Volumes::default();
 }

@@ -27,6 +27,7 @@ mod in_frame;
 mod in_layers;
 mod lighting;
 mod low;
+mod low_depth;
 mod overflow;
 mod pack;
 mod painter;

@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use umbrage::ShadowRenderer;
+use umbrage::{ShadowRenderer, Uploaded};
 
 use super::lighting::Lighting;
 use super::low::{LowFrame, area, low_size};
@@ -173,6 +173,11 @@ impl Technique for InLayers {
         Ok(())
     }
 
+    fn own_renderer(&self) -> Option<(&ShadowRenderer, Uploaded)> {
+        let low = self.low.as_ref();
+        low.map(|low| (&low.shadows, low.uploaded))
+    }
+
     fn report(&self) -> TechniqueReport {
         let texture = self.stack.as_ref().map(|stack| &stack.texture);
         let layers = texture.map_or(0, |t| {
@@ -197,18 +202,15 @@ impl InLayers {
         batch: &[Placed],
     ) {
         let Some(stack) = &self.stack else { return };
-        let (shadows, plan, targets) = match &self.low {
-            None => (given.shadows, given.plan, given.targets),
-            Some(low) => (
-                &low.shadows,
-                &low.plan,
-                low.targets().unwrap_or(given.targets),
-            ),
+        let full = &given.targets.depth;
+        let (shadows, plan, depth) = match &self.low {
+            None => (given.shadows, given.plan, full),
+            Some(low) => (&low.shadows, &low.plan, low.depth().unwrap_or(full)),
         };
         let mut batch = batch.to_vec();
         batch.sort_by_key(|p| p.layer);
         for layer in batch.chunk_by(|a, b| a.layer == b.layer) {
-            let mut pass = mask_pass(encoder, &stack.texture, layer[0].layer, targets);
+            let mut pass = mask_pass(encoder, &stack.texture, layer[0].layer, depth);
             for placed in layer {
                 let (number, channel) = (placed.number, placed.channel);
                 let light = &plan.lights[number];
@@ -252,7 +254,7 @@ fn mask_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     masks: &wgpu::Texture,
     layer: u32,
-    targets: &crate::gbuffer::Targets,
+    depth: &wgpu::Texture,
 ) -> wgpu::RenderPass<'e> {
     let view = masks.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2),
@@ -272,7 +274,7 @@ fn mask_pass<'e>(
             },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &whole(&targets.depth),
+            view: &whole(depth),
             depth_ops: None,
             stencil_ops: Some(wgpu::Operations {
                 load: wgpu::LoadOp::Load,
