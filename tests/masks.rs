@@ -3,7 +3,9 @@
 
 mod common;
 
-use common::{Site, check, judged, lab, plain, point, room, scene_of, skipped, staged};
+use common::{
+    Site, check, check_changed, judged, lab, plain, point, room, scene_of, skipped, staged,
+};
 use glam::Vec3;
 use umbrage_core::View;
 use umbrage_core::frame::{LightPath, LightPlan};
@@ -180,6 +182,32 @@ fn from_a_side_of_a_volume_masks_count_behind_the_surface() {
 fn found_in(site: &Site, size: [u32; 2]) -> View {
     let stand = auto_camera(&site.stage.mesh, &plain(&site.lights), 1.0, 16.0 / 9.0);
     View::look_at(stand.eye, stand.target, 1.0, site.near(), size)
+}
+
+#[test]
+fn a_count_below_zero_leaves_the_bits_of_other_lights_alone() {
+    let site = fence(2);
+    let view = site.look(
+        Vec3::new(-1.4, 0.5, 0.1),
+        Vec3::new(3.0, 0.0, 0.2),
+        [160, 120],
+    );
+    let lights = [lamp(), lamp(), lamp()].concat();
+    for method in MASKS {
+        let right = check(&site, &lights, &view, method).mask;
+        let short = check_changed(&site, &lights, &view, method, |lab| {
+            let path = &mut lab.plan.lights[1].path;
+            assert_eq!(*path, LightPath::ZPass { eye_count: 1 });
+            *path = LightPath::ZPass { eye_count: 0 };
+        });
+        let differ = right.words.iter().zip(&short.mask.words);
+        let (ours, others) = differ.fold((0, 0), |(ours, others), (a, b)| {
+            (ours | ((a ^ b) & 2), others | ((a ^ b) & !2))
+        });
+        let name = method.name();
+        assert_eq!(ours, 2, "{name}: the control: the count must be wrong");
+        assert_eq!(others, 0, "{name}");
+    }
 }
 
 #[test]
@@ -403,7 +431,7 @@ fn lower_resolutions_attenuate_too() {
 
 /// A leaning post within the range of a light at the origin, in front of a wall far beyond it, and
 /// plates beside the light, each too wide to be hidden by those before it. Seen from [`beside_the_post`],
-//// the wall beside the post is seen through the plates' volumes: in them all if `half_size` is 0.5,
+/// the wall beside the post is seen through the plates' volumes: in them all if `half_size` is 0.5,
 /// and out of them again if it is 0.2.
 fn post_before_a_wall(plates: u8, half_size: f32) -> Site {
     let mut mesh = Mesh {

@@ -204,7 +204,7 @@ impl Rectangles {
             Step::Rectangle(Rectangle::Double) => ("one", Some(add(Dst, One))),
             Step::Rectangle(Rectangle::Invert) => ("one", Some(add(OneMinusDst, OneMinusSrc))),
             Step::Rectangle(Rectangle::AddHalf) => ("half_of_one", Some(add(One, One))),
-            Step::Rectangle(Rectangle::Clamp) => {
+            Step::Rectangle(Rectangle::Clamp | Rectangle::Limit) => {
                 ("at_most_one", Some(equation(BlendOperation::Min)))
             }
             Step::Rectangle(Rectangle::AtLeastHalf) => {
