@@ -5,13 +5,6 @@
 // a mask that is read filtered is read there.
 override whole_rows: bool = false;
 
-struct Slot {
-    layer: u32,
-    channel: u32,
-    start: f32,
-    dark: f32,
-}
-
 @group(0) @binding(0) var<storage, read> slots: array<Slot>;
 
 struct Varying {
@@ -52,7 +45,9 @@ fn half_of_one(@builtin(vertex_index) index: u32, @builtin(instance_index) light
     return rectangle(index, light, 0.5, 0.0);
 }
 
-// Other channels are below the largest half float.
+// Other channels are at most 1: each light's mask is normalised before the next one is drawn, over
+// all that is left of it. Beside spans a mask that is not normalised may be infinite, where nobody
+// reads it.
 @vertex
 fn at_most_one(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
     return rectangle(index, light, 1.0, 65504.0);

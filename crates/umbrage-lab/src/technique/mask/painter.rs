@@ -8,8 +8,10 @@ use umbrage::{
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, RenderPipeline, TextureFormat};
 
 use super::plan::{MaskPlan, Place, Rectangle, Step};
+use super::slots::SLOT_WGSL;
 use crate::gpu::Gpu;
 use crate::method::{Counting, MaskBuffer};
+use crate::technique::binding::{STORAGE, bind, buffer, layout};
 
 /// Pipelines for the steps of one plan.
 #[derive(Debug)]
@@ -55,14 +57,7 @@ impl Painter {
 
     /// Binds the lights' slots.
     pub(crate) fn bind(&self, gpu: &Gpu, slots: &wgpu::Buffer) -> wgpu::BindGroup {
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("mask"),
-            layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: slots.as_entire_binding(),
-            }],
-        })
+        bind(gpu, "mask", &self.layout, [slots.as_entire_binding()])
     }
 
     /// Draws all steps for one light, whose mask is in `channel`, over the scissor that is set; the
@@ -126,22 +121,11 @@ struct Rectangles {
 impl Rectangles {
     fn new(gpu: &Gpu, shadows: &ShadowRenderer, plan: MaskPlan, format: TextureFormat) -> Self {
         let device = &gpu.device;
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("mask"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Storage { read_only: true },
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
+        let stage = wgpu::ShaderStages::VERTEX;
+        let layout = layout(gpu, "mask", stage, [buffer(STORAGE)]);
         let placing = light_wgsl(1);
         let shading = include_str!("../../shaders/mask.wgsl");
-        let source = format!("{CLIP_WGSL}\n{placing}\n{shading}");
+        let source = format!("{CLIP_WGSL}\n{placing}\n{SLOT_WGSL}\n{shading}");
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("mask"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
