@@ -3,7 +3,9 @@
 
 mod common;
 
-use common::{Site, check, judged, lab, plain, point, room, scene_of, skipped, staged};
+use common::{
+    Site, check, check_changed, judged, lab, plain, point, room, scene_of, skipped, staged,
+};
 use glam::Vec3;
 use umbrage_core::View;
 use umbrage_core::frame::{LightPath, LightPlan};
@@ -176,6 +178,38 @@ fn from_a_side_of_a_volume_masks_count_behind_the_surface() {
     assert_eq!((found.wrong, found.unrepresentable), (0, 0));
 }
 
+/// A standpoint that shows much of the site.
+fn found_in(site: &Site, size: [u32; 2]) -> View {
+    let stand = auto_camera(&site.stage.mesh, &plain(&site.lights), 1.0, 16.0 / 9.0);
+    View::look_at(stand.eye, stand.target, 1.0, site.near(), size)
+}
+
+#[test]
+fn a_count_below_zero_leaves_the_bits_of_other_lights_alone() {
+    let site = fence(2);
+    let view = site.look(
+        Vec3::new(-1.4, 0.5, 0.1),
+        Vec3::new(3.0, 0.0, 0.2),
+        [160, 120],
+    );
+    let lights = [lamp(), lamp(), lamp()].concat();
+    for method in MASKS {
+        let right = check(&site, &lights, &view, method).mask;
+        let short = check_changed(&site, &lights, &view, method, |lab| {
+            let path = &mut lab.plan.lights[1].path;
+            assert_eq!(*path, LightPath::ZPass { eye_count: 1 });
+            *path = LightPath::ZPass { eye_count: 0 };
+        });
+        let differ = right.words.iter().zip(&short.mask.words);
+        let (ours, others) = differ.fold((0, 0), |(ours, others), (a, b)| {
+            (ours | ((a ^ b) & 2), others | ((a ^ b) & !2))
+        });
+        let name = method.name();
+        assert_eq!(ours, 2, "{name}: the control: the count must be wrong");
+        assert_eq!(others, 0, "{name}");
+    }
+}
+
 #[test]
 fn the_room_and_a_bundled_world_are_right_where_the_layers_fit() {
     let room = Site::new(room::scene(), Casters::Both);
@@ -190,8 +224,7 @@ fn the_room_and_a_bundled_world_are_right_where_the_layers_fit() {
         [160, 120],
     );
     let keep = Site::open("data/worlds/stormkeep.glb", Casters::Material);
-    let stand = auto_camera(&keep.stage.mesh, &plain(&keep.lights), 1.0, 16.0 / 9.0);
-    let found = View::look_at(stand.eye, stand.target, 1.0, keep.near(), [128, 72]);
+    let found = found_in(&keep, [128, 72]);
     for (site, lights, view) in [(&room, &lights, &view), (&keep, &keep.lights, &found)] {
         for method in MASKS {
             let found = outcome(site, lights, view, method);
@@ -316,9 +349,19 @@ fn every_size_has_a_lower_resolution() {
 }
 
 fn rendered(site: &Site, view: &View, method: Method, application: Application) -> Lit {
+    picture(site, &lamp(), view, method, application)
+}
+
+fn picture(
+    site: &Site,
+    lights: &[StageLight],
+    view: &View,
+    method: Method,
+    application: Application,
+) -> Lit {
     let mut lab = lab();
     lab.application = application;
-    let lit = lab.render(&site.stage, &lamp(), view, method, 1);
+    let lit = lab.render(&site.stage, lights, view, method, 1);
     lab.application = Application::Black;
     lab.volumes = Volumes::default();
     lit.unwrap_or_else(|error| panic!("{}: {error}", method.name()))
@@ -386,6 +429,72 @@ fn lower_resolutions_attenuate_too() {
     }
 }
 
+/// A leaning post within the range of a light at the origin, in front of a wall far beyond it, and
+/// plates beside the light, each too wide to be hidden by those before it. Seen from [`beside_the_post`],
+/// the wall beside the post is seen through the plates' volumes: in them all if `half_size` is 0.5,
+/// and out of them again if it is 0.2.
+fn post_before_a_wall(plates: u8, half_size: f32) -> Site {
+    let mut mesh = Mesh {
+        name: "post".to_owned(),
+        ..Mesh::default()
+    };
+    let upright = |x: f32, [low, high]: [f32; 2], half: f32, lean: f32| {
+        let corner = |y: f32, z: f32| Vec3::new(x, y, z);
+        [
+            corner(-half, low),
+            corner(-half, high),
+            corner(half, high + lean),
+            corner(half, low + lean),
+        ]
+    };
+    room::quad(&mut mesh, upright(-4.0, [3.4, 4.0], 3.0, 0.8), 1);
+    room::quad(&mut mesh, upright(-30.0, [-60.0, 60.0], 60.0, 0.0), 1);
+    for i in 0..plates {
+        let x = 1.0 + 0.05 * f32::from(i);
+        let half = half_size * (x + 0.05 * f32::from(i));
+        room::quad(&mut mesh, upright(-x, [-half, half], half, 0.0), 1);
+    }
+    Site::new(scene_of("post", mesh), Casters::Material)
+}
+
+fn beside_the_post(site: &Site) -> View {
+    let [eye, target] = [Vec3::new(4.0, 0.0, 8.0), Vec3::new(-4.0, 0.0, 4.0)];
+    site.look(eye, target, [331, 247])
+}
+
+#[test]
+fn masks_of_a_lower_resolution_are_normalised_beyond_the_receivers() {
+    let mut lights = staged([point(Vec3::ZERO, 10.0)]);
+    lights[0].power *= 1e3;
+    let shadowed = post_before_a_wall(6, 0.5);
+    let crossed = post_before_a_wall(1, 0.2);
+    let mut failures = Vec::new();
+    for (method, _) in low_methods() {
+        let name = method.name();
+        for (site, is_lit) in [(&shadowed, false), (&crossed, true)] {
+            let view = beside_the_post(site);
+            let picture = |method| picture(site, &lights, &view, method, Application::Black).light;
+            let (lit, found) = (picture(Method::None), picture(method));
+            let bright = lit.iter().map(|l| l.max_element()).fold(0.0, f32::max);
+            // Not a number is too bright as well.
+            let is_within = |f: Vec3, l: Vec3| (f - l).cmple(Vec3::splat(0.01 * bright)).all();
+            let pixels = found.iter().zip(&lit);
+            let brighter = pixels.filter(|(f, l)| !is_within(**f, **l)).count();
+            let other = if is_lit {
+                differing(&found, &lit, 0.01)
+            } else {
+                0
+            };
+            if brighter + other > 0 {
+                failures.push(format!(
+                    "{name}: {brighter} brighter, {other} other than lit"
+                ));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
 #[test]
 fn who_makes_no_mask_cannot_apply_it() {
     let site = fence(1);
@@ -420,5 +529,38 @@ fn what_masks_hold_is_bounded_and_reported() {
         assert!(held <= most, "{}: {held} bytes", method.name());
         assert_eq!(held == 0, most == 0, "{}", method.name());
     }
+    lab.volumes = Volumes::default();
+}
+
+#[test]
+fn a_second_renderer_is_counted_where_masks_have_one() {
+    let site = Site::open("data/worlds/stormkeep.glb", Casters::Material);
+    let view = found_in(&site, [128, 72]);
+    let mut lab = lab();
+    let mut frame = |method| {
+        lab.prepare(&site.stage, &site.lights, &view, method);
+        lab.mask(&site.stage, &site.lights, &view).expect("a mask");
+        let lights = 0..site.lights.len();
+        let planned = lab.plan.drawn().map(|(_, light)| light.quads.len()).sum();
+        let drawn: u32 = lights.map(|i| lab.quads_drawn(i)).sum();
+        (lab.uploaded, [planned, drawn as usize], lab.held.gpu_bytes)
+    };
+    let (one, counter, _) = frame(Method::Counter);
+    let half = Method::LowResolution {
+        of: Counting::Stencil,
+        divisor: Divisor::Half,
+    };
+    let (both, low, bytes) = frame(half);
+    assert!(one.volume_bytes > 0 && one.other_bytes > 0);
+    assert_eq!(both.volume_bytes, 2 * one.volume_bytes);
+    assert_eq!(both.other_bytes, 2 * one.other_bytes);
+    // The quads that are drawn are those of the lower resolution, which leaves out as many.
+    assert_eq!(low[0], counter[0]);
+    assert!(counter[1] < counter[0] && low[1] < low[0], "{low:?}");
+    assert!(low[1].abs_diff(counter[1]) < counter[1] / 4, "{low:?}");
+    let world = &site.stage.world;
+    let edges = size_of_val(&world.edges.vertices[..]) + size_of_val(&world.positions[..]);
+    let triangles = size_of_val(&world.triangles[..]);
+    assert!(bytes as usize > edges + triangles + 8 * low[0], "{bytes}");
     lab.volumes = Volumes::default();
 }

@@ -290,9 +290,20 @@ impl Lab {
             run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
         }
         run.surface.update(&self.gpu, stage);
-        self.uploaded = run.shadows.prepare(device, queue, &self.frame(view))?;
+        let mut frame = self.frame(view);
+        if let Method::LowResolution { .. } = run.method {
+            // Its quads are drawn by a renderer of the technique's own.
+            frame.culls = frame.culls.without(Cull::Quads);
+        }
+        let mut uploaded = run.shadows.prepare(device, queue, &frame)?;
         let (technique, given) = run.technique(&self.gpu, stage, lights, self.frame(view));
-        technique.prepare(&given)
+        technique.prepare(&given)?;
+        if let Some((_, own)) = technique.own_renderer() {
+            uploaded.volume_bytes += own.volume_bytes;
+            uploaded.other_bytes += own.other_bytes;
+        }
+        self.uploaded = uploaded;
+        Ok(())
     }
 
     /// The last picture; `times` become medians over the frames after the first.
@@ -304,7 +315,7 @@ impl Lab {
             self.times.volumes_first = first.volumes;
             self.times.frame_first = first.frame;
         }
-        self.calls = read_calls(&self.gpu, &run.shadows)?;
+        self.calls = read_calls(&self.gpu, run)?;
         self.held = run.technique.report();
         let light = read_texture(&self.gpu, hdr)?;
         Ok(Lit {
@@ -403,7 +414,7 @@ impl Lab {
                     .map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])),
             );
         }
-        self.calls = read_calls(&self.gpu, &run.shadows)?;
+        self.calls = read_calls(&self.gpu, run)?;
         self.held = run.technique.report();
         Ok(Mask {
             size: view.size,

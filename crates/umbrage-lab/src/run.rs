@@ -62,15 +62,28 @@ impl Run {
             plan: frame.plan,
             frame,
             targets: &self.targets,
-            surface: &self.surface,
             shadows: &self.shadows,
         };
         (&mut *self.technique, given)
     }
 }
 
-/// The calls that receivers left, or none where they were not looked for.
-pub(crate) fn read_calls(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuError> {
+/// What was drawn of each light, or nothing where receivers were not looked for: the light by the
+/// run's renderer, its volume by the technique's own if it has one.
+pub(crate) fn read_calls(gpu: &Gpu, run: &Run) -> Result<Vec<LightCalls>, GpuError> {
+    let mut calls = calls_of(gpu, &run.shadows)?;
+    if let Some((own, _)) = run.technique.own_renderer() {
+        for (call, own) in calls.iter_mut().zip(calls_of(gpu, own)?) {
+            *call = LightCalls {
+                light: call.light,
+                ..own
+            };
+        }
+    }
+    Ok(calls)
+}
+
+fn calls_of(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuError> {
     let Some(calls) = shadows.calls() else {
         return Ok(Vec::new());
     };

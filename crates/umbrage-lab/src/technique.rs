@@ -18,10 +18,10 @@ use std::fmt::Debug;
 use std::ops::Range;
 
 use umbrage::frame::FramePlan;
-use umbrage::{Frame, ShadowRenderer, View};
+use umbrage::{Frame, ShadowRenderer, Uploaded, View};
 
 use crate::application::Application;
-use crate::gbuffer::{GBufferPass, Targets};
+use crate::gbuffer::Targets;
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::LightDraw;
 use crate::method::{Counting, MaskBuffer, Method};
@@ -49,8 +49,6 @@ pub(crate) struct Given<'a> {
     pub(crate) frame: Frame<'a>,
     /// The surface, drawn earlier in the same encoder.
     pub(crate) targets: &'a Targets,
-    /// Draws the surface, for who needs it at another size.
-    pub(crate) surface: &'a GBufferPass,
     /// World, view and volumes on the GPU; records lights in their scissors.
     pub(crate) shadows: &'a ShadowRenderer,
 }
@@ -81,6 +79,12 @@ pub(crate) trait Technique: Debug {
         lights: Range<usize>,
         target: &wgpu::Texture,
     ) -> Result<(), GpuError>;
+
+    /// The shadow renderer of its own that draws the quads, if it has one, and what `prepare`
+    /// uploaded with it last.
+    fn own_renderer(&self) -> Option<(&ShadowRenderer, Uploaded)> {
+        None
+    }
 
     /// What it holds.
     fn report(&self) -> TechniqueReport {

@@ -134,6 +134,7 @@ fn mark(in: Varying) -> @location(0) vec4f {
 }
 
 // The same in integers of eleven bits, red, green and blue, for half floats whose alpha is taken.
+// Each is multiplied by alpha, which is 0 or 1 exactly: anything else would be other lights' bits.
 @fragment
 fn mark_wide(in: Varying) -> @location(0) vec4f {
     let bit = in.light & 31u;

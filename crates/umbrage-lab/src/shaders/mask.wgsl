@@ -1,12 +1,9 @@
 // Rectangles over a light's rows of pixels, which change its mask in one channel and leave the
 // other channels alone: how, the blend states say that each of these goes with.
 
-struct Slot {
-    layer: u32,
-    channel: u32,
-    start: f32,
-    dark: f32,
-}
+// Whether a row reaches from one side of the scissor to the other, past the receivers: faces do, and
+// a mask that is read filtered is read there.
+override whole_rows: bool = false;
 
 @group(0) @binding(0) var<storage, read> slots: array<Slot>;
 
@@ -15,11 +12,22 @@ struct Varying {
     @location(0) @interpolate(flat) color: vec4f,
 }
 
+fn place(index: u32, light: u32) -> vec4f {
+    let seen = umbrage_light_corner(index, light);
+    if !whole_rows || umbrage_spans.rows == 0u {
+        return seen;
+    }
+    // Its corners as umbrage_light_corner numbers them.
+    let corner = index % 6u;
+    let right = corner == 2u || corner == 3u || corner == 5u;
+    return vec4f(select(-1.0, 1.0, right), seen.yzw);
+}
+
 // `value` in the light's channel, `other` elsewhere.
 fn rectangle(index: u32, light: u32, value: f32, other: f32) -> Varying {
     let is_ours = vec4u(0u, 1u, 2u, 3u) == vec4u(slots[light].channel);
     let color = select(vec4f(other), vec4f(value), is_ours);
-    return Varying(umbrage_light_corner(index, light), color);
+    return Varying(place(index, light), color);
 }
 
 @vertex
@@ -37,7 +45,9 @@ fn half_of_one(@builtin(vertex_index) index: u32, @builtin(instance_index) light
     return rectangle(index, light, 0.5, 0.0);
 }
 
-// Other channels are below the largest half float.
+// Other channels are at most 1: each light's mask is normalised before the next one is drawn, over
+// all that is left of it. Beside spans a mask that is not normalised may be infinite, where nobody
+// reads it.
 @vertex
 fn at_most_one(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> Varying {
     return rectangle(index, light, 1.0, 65504.0);

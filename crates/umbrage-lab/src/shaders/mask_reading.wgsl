@@ -1,12 +1,5 @@
 // A light's mask at a pixel: what is left of the light there.
 
-struct Slot {
-    layer: u32,
-    channel: u32,
-    start: f32,
-    dark: f32,
-}
-
 @group(2) @binding(0) var masks: texture_2d_array<f32>;
 @group(2) @binding(1) var mask_sampler: sampler;
 @group(2) @binding(2) var<storage, read> slots: array<Slot>;

@@ -20,13 +20,15 @@
 //!   exponent counts, up to 16 layers instead of two, starting from 1/2. Normalising, the least of
 //!   alpha and 1 stands where the paper doubles with a clamp; both leave 1/2 and 1, and the other
 //!   two rectangles are the paper's. `mask-screen` is the paper's own arithmetic. Nor does such
-//!   alpha stop at white: where rounding leaves a count below zero, at single ambiguous pixels, the
-//!   light is brighter than it should be, where the stencil has a dark pixel.
+//!   alpha stop at white: where rounding leaves a count below zero, at single ambiguous pixels, it
+//!   ends at 1.5 or 3, and one more rectangle takes that back to 1. Such a pixel is lit, where the
+//!   stencil has a dark one.
 
 mod in_frame;
 mod in_layers;
 mod lighting;
 mod low;
+mod low_depth;
 mod overflow;
 mod pack;
 mod painter;

@@ -4,11 +4,13 @@
 //! made and normalised, then the batch's lights are drawn, each multiplied by its mask. At full
 //! resolution a light reads the texel of its pixel; else masks are filtered bilinearly, and nothing
 //! knows about depth: a mask bleeds over edges of the surface by up to a texel, as the paper's
-//! does. What lies outside a light's rows of texels is lit.
+//! does. Filtering looks past the tiles in which receivers were found, at a background beyond the
+//! light's range, where faces count as well: at a lower resolution a mask in floats or eight bits
+//! is started and normalised over all of the light's scissor. One from the stencil is lit there.
 
 use std::ops::Range;
 
-use umbrage::ShadowRenderer;
+use umbrage::{ShadowRenderer, Uploaded};
 
 use super::lighting::Lighting;
 use super::low::{LowFrame, area, low_size};
@@ -61,7 +63,10 @@ impl InLayers {
         application: Application,
         divisor: u32,
     ) -> Result<Self, GpuError> {
-        let place = Place::Layers;
+        let place = match divisor {
+            1 => Place::Layers,
+            _ => Place::LowLayers,
+        };
         let plan = MaskPlan {
             of,
             place,
@@ -168,6 +173,11 @@ impl Technique for InLayers {
         Ok(())
     }
 
+    fn own_renderer(&self) -> Option<(&ShadowRenderer, Uploaded)> {
+        let low = self.low.as_ref();
+        low.map(|low| (&low.shadows, low.uploaded))
+    }
+
     fn report(&self) -> TechniqueReport {
         let texture = self.stack.as_ref().map(|stack| &stack.texture);
         let layers = texture.map_or(0, |t| {
@@ -195,18 +205,15 @@ impl InLayers {
         batch: &[Placed],
     ) {
         let Some(stack) = &self.stack else { return };
-        let (shadows, plan, targets) = match &self.low {
-            None => (given.shadows, given.plan, given.targets),
-            Some(low) => (
-                &low.shadows,
-                &low.plan,
-                low.targets().unwrap_or(given.targets),
-            ),
+        let full = &given.targets.depth;
+        let (shadows, plan, depth) = match &self.low {
+            None => (given.shadows, given.plan, full),
+            Some(low) => (&low.shadows, &low.plan, low.depth().unwrap_or(full)),
         };
         let mut batch = batch.to_vec();
         batch.sort_by_key(|p| p.layer);
         for layer in batch.chunk_by(|a, b| a.layer == b.layer) {
-            let mut pass = mask_pass(encoder, &stack.texture, layer[0].layer, targets);
+            let mut pass = mask_pass(encoder, &stack.texture, layer[0].layer, depth);
             for placed in layer {
                 let (number, channel) = (placed.number, placed.channel);
                 let light = &plan.lights[number];
@@ -250,7 +257,7 @@ fn mask_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     masks: &wgpu::Texture,
     layer: u32,
-    targets: &crate::gbuffer::Targets,
+    depth: &wgpu::Texture,
 ) -> wgpu::RenderPass<'e> {
     let view = masks.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2),
@@ -270,7 +277,7 @@ fn mask_pass<'e>(
             },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &whole(&targets.depth),
+            view: &whole(depth),
             depth_ops: None,
             stencil_ops: Some(wgpu::Operations {
                 load: wgpu::LoadOp::Load,

@@ -1,28 +1,34 @@
 //! The frame once more at a lower resolution: depth, receivers and volumes, for masks that are
 //! counted there.
 //!
-//! Same eye and frustum, so that what is uploaded differs in the size alone; the last column and
-//! row of texels are as wide and high as the others, and cover less where the division leaves a
-//! rest. Scissors are a texel wider than a light's own, since filtering looks one texel aside.
+//! Same eye and frustum, so that what is uploaded differs in the size alone: where the division
+//! leaves a rest, every texel is a little less than `divisor` pixels wide or high, 721/361 for half
+//! of 721. Scissors are a texel wider than a light's own, since filtering looks one texel aside.
 
 use umbrage::frame::bounds::light_rect;
 use umbrage::{
-    Extrusion, Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, View, VolumeColor,
+    Extrusion, Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, Uploaded, View, VolumeColor,
 };
 
-use crate::gbuffer::{DEPTH_STENCIL, Targets, depth_only};
+use super::low_depth::LowDepth;
+use crate::gbuffer::{DEPTH_STENCIL, depth_only, texture};
 use crate::gpu::{Gpu, GpuError};
 use crate::technique::Given;
 
-/// World, volumes and surface for one lower resolution.
+/// World, volumes and depth for one lower resolution.
 #[derive(Debug)]
 pub(crate) struct LowFrame {
     divisor: u32,
     pub(crate) shadows: ShadowRenderer,
     pub(crate) plan: FramePlan,
-    targets: Option<Targets>,
-    /// Whether this frame's surface is still to be drawn.
-    pending: bool,
+    /// What the last `prepare` uploaded.
+    pub(crate) uploaded: Uploaded,
+    surface: LowDepth,
+    depth: Option<wgpu::Texture>,
+    /// View and world, for `surface`, until this frame's is drawn.
+    pending: Option<wgpu::BindGroup>,
+    /// Bytes of edges and quads, these before and after the cull.
+    unseen_bytes: u64,
 }
 
 impl LowFrame {
@@ -44,8 +50,11 @@ impl LowFrame {
             divisor,
             shadows: ShadowRenderer::new(&gpu.device, &options)?,
             plan: FramePlan::default(),
-            targets: None,
-            pending: true,
+            uploaded: Uploaded::default(),
+            surface: LowDepth::new(gpu),
+            depth: None,
+            pending: None,
+            unseen_bytes: 0,
         })
     }
 
@@ -61,8 +70,10 @@ impl LowFrame {
         for (light, plan) in given.frame.lights.iter().zip(&mut self.plan.lights) {
             plan.scissor = widened(light_rect(&view, light), size);
         }
-        if self.targets.as_ref().is_none_or(|t| t.size != size) {
-            self.targets = Some(Targets::new(given.gpu, size)?);
+        let is_old = |d: &wgpu::Texture| [d.width(), d.height()] != size;
+        if self.depth.as_ref().is_none_or(is_old) {
+            let usage = wgpu::TextureUsages::TEXTURE_BINDING;
+            self.depth = Some(texture(given.gpu, "low depth", size, DEPTH_STENCIL, usage));
         }
         self.shadows
             .upload_world(device, queue, &given.stage.world)?;
@@ -71,37 +82,39 @@ impl LowFrame {
             plan: &self.plan,
             ..given.frame
         };
-        self.shadows.prepare(device, queue, &frame)?;
-        self.pending = true;
+        self.uploaded = self.shadows.prepare(device, queue, &frame)?;
+        self.pending = Some(self.surface.bind(given.gpu, &self.shadows)?);
+        let edges = size_of_val(&given.stage.world.edges.vertices[..]);
+        let quads = size_of_val(&given.frame.volumes.quads[..]);
+        self.unseen_bytes = (edges + 2 * quads) as u64;
         Ok(())
     }
 
-    /// Draws the surface and finds the receivers, if this frame's were not yet.
+    /// Draws depth and finds the receivers, if this frame's were not yet.
     pub(crate) fn record_surface(&mut self, given: &Given<'_>, encoder: &mut wgpu::CommandEncoder) {
-        let Some(targets) = self.targets.as_ref().filter(|_| self.pending) else {
+        let (Some(world), Some(depth)) = (self.pending.take(), &self.depth) else {
             return;
         };
-        given.surface.record(encoder, targets, None);
-        let depth = depth_only(&targets.depth);
+        let triangles = given.stage.world.triangles.len() as u32;
+        self.surface.record(encoder, &world, triangles, depth);
         self.shadows
-            .find_receivers(&given.gpu.device, encoder, &depth, None);
-        self.pending = false;
+            .find_receivers(&given.gpu.device, encoder, &depth_only(depth), None);
     }
 
-    pub(crate) fn targets(&self) -> Option<&Targets> {
-        self.targets.as_ref()
+    pub(crate) fn depth(&self) -> Option<&wgpu::Texture> {
+        self.depth.as_ref()
     }
 
-    /// Bytes of surface and world; quads are few.
+    /// Bytes of depth, world and quads.
     pub(crate) fn gpu_bytes(&self) -> u64 {
-        // Depth with stencil, albedo, normal, distance.
-        const SURFACE: u64 = 8 + 4 + 8 + 4;
-        let pixels = self.targets.as_ref().map_or(0, |t| area(t.size));
+        // With stencil.
+        const DEPTH: u64 = 8;
+        let size = self.depth.as_ref().map(|d| [d.width(), d.height()]);
         let world = self.shadows.world_buffers();
         let world = world.map_or(0, |(positions, triangles)| {
             positions.size() + triangles.size()
         });
-        SURFACE * pixels + world
+        DEPTH * size.map_or(0, area) + world + self.unseen_bytes
     }
 }
 

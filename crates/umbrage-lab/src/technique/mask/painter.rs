@@ -8,8 +8,10 @@ use umbrage::{
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, RenderPipeline, TextureFormat};
 
 use super::plan::{MaskPlan, Place, Rectangle, Step};
+use super::slots::SLOT_WGSL;
 use crate::gpu::Gpu;
 use crate::method::{Counting, MaskBuffer};
+use crate::technique::binding::{STORAGE, bind, buffer, layout};
 
 /// Pipelines for the steps of one plan.
 #[derive(Debug)]
@@ -55,14 +57,7 @@ impl Painter {
 
     /// Binds the lights' slots.
     pub(crate) fn bind(&self, gpu: &Gpu, slots: &wgpu::Buffer) -> wgpu::BindGroup {
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("mask"),
-            layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: slots.as_entire_binding(),
-            }],
-        })
+        bind(gpu, "mask", &self.layout, [slots.as_entire_binding()])
     }
 
     /// Draws all steps for one light, whose mask is in `channel`, over the scissor that is set; the
@@ -126,22 +121,11 @@ struct Rectangles {
 impl Rectangles {
     fn new(gpu: &Gpu, shadows: &ShadowRenderer, plan: MaskPlan, format: TextureFormat) -> Self {
         let device = &gpu.device;
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("mask"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Storage { read_only: true },
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
+        let stage = wgpu::ShaderStages::VERTEX;
+        let layout = layout(gpu, "mask", stage, [buffer(STORAGE)]);
         let placing = light_wgsl(1);
         let shading = include_str!("../../shaders/mask.wgsl");
-        let source = format!("{CLIP_WGSL}\n{placing}\n{shading}");
+        let source = format!("{CLIP_WGSL}\n{placing}\n{SLOT_WGSL}\n{shading}");
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("mask"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
@@ -171,7 +155,7 @@ impl Rectangles {
             }),
             write_mask: match self.plan.place {
                 Place::Frame => wgpu::ColorWrites::ALPHA,
-                Place::Layers => wgpu::ColorWrites::ALL,
+                Place::Layers | Place::LowLayers => wgpu::ColorWrites::ALL,
             },
         }
     }
@@ -204,7 +188,7 @@ impl Rectangles {
             Step::Rectangle(Rectangle::Double) => ("one", Some(add(Dst, One))),
             Step::Rectangle(Rectangle::Invert) => ("one", Some(add(OneMinusDst, OneMinusSrc))),
             Step::Rectangle(Rectangle::AddHalf) => ("half_of_one", Some(add(One, One))),
-            Step::Rectangle(Rectangle::Clamp) => {
+            Step::Rectangle(Rectangle::Clamp | Rectangle::Limit) => {
                 ("at_most_one", Some(equation(BlendOperation::Min)))
             }
             Step::Rectangle(Rectangle::AtLeastHalf) => {
@@ -220,6 +204,8 @@ impl Rectangles {
             Step::Rectangle(Rectangle::Darken) => ("dark", Some(add(Dst, Zero))),
             _ => ("start", Some(add(Dst, Zero))),
         };
+        let counted = self.plan.of != Counting::Stencil;
+        let whole_rows = counted && self.plan.place == Place::LowLayers;
         let mut depth_stencil = shadows.light_depth_stencil();
         if step == Step::Rectangle(Rectangle::Darken) {
             depth_stencil.stencil.front.compare = wgpu::CompareFunction::NotEqual;
@@ -234,7 +220,10 @@ impl Rectangles {
                 vertex: wgpu::VertexState {
                     module: &self.module,
                     entry_point: Some(entry_point),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &[("whole_rows", f64::from(u8::from(whole_rows)))],
+                        ..wgpu::PipelineCompilationOptions::default()
+                    },
                     buffers: &[],
                 },
                 primitive: wgpu::PrimitiveState::default(),

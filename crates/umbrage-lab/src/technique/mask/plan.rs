@@ -20,6 +20,8 @@ pub(crate) enum Place {
     Frame,
     /// In channels of a texture of its own.
     Layers,
+    /// The same at a lower resolution, whose texels a light reads up to one aside of its own.
+    LowLayers,
 }
 
 /// One step.
@@ -59,6 +61,10 @@ pub(crate) enum Rectangle {
     /// One less twice what is missing to 1: from half and one to nothing and one. No step of the
     /// paper, whose masks by maximum attenuate and no more.
     Stretch,
+    /// No more than what is lit: once more [`Rectangle::Clamp`], after all others. No step of the
+    /// paper, whose alpha clamps by itself: where rounding leaves a count below zero, floats would
+    /// be left at up to three times what is lit.
+    Limit,
     /// Times the application's share, where the stencil says shadow. No step of the paper, in which
     /// a stencil stays at full resolution.
     Darken,
@@ -75,15 +81,15 @@ pub(crate) struct MaskPlan {
 impl MaskPlan {
     /// What is drawn for one light, in order.
     pub(crate) fn steps(self) -> Vec<Step> {
-        use Rectangle::{AddHalf, AtLeastHalf, Clamp, Darken, Double, Invert, Stretch};
+        use Rectangle::{AddHalf, AtLeastHalf, Clamp, Darken, Double, Invert, Limit, Stretch};
         let attenuated = self.application == Application::Attenuated;
         let last = if attenuated { AddHalf } else { Double };
         let normalise = match self.of {
             Counting::Stencil => vec![Darken],
             Counting::Mask(MaskBuffer::Screen) => vec![Double, Invert, last],
-            Counting::Mask(MaskBuffer::Alpha) => vec![Clamp, Invert, last],
-            Counting::Mask(MaskBuffer::Max) if attenuated => vec![AtLeastHalf],
-            Counting::Mask(MaskBuffer::Max) => vec![AtLeastHalf, Stretch],
+            Counting::Mask(MaskBuffer::Alpha) => vec![Clamp, Invert, last, Limit],
+            Counting::Mask(MaskBuffer::Max) if attenuated => vec![AtLeastHalf, Limit],
+            Counting::Mask(MaskBuffer::Max) => vec![AtLeastHalf, Stretch, Limit],
         };
         let mut steps = vec![Step::Surface];
         match self.of {
@@ -155,38 +161,41 @@ mod tests {
     use super::*;
     use Application::{Ambient, Attenuated, Black};
 
-    /// Passes of the scene, and rectangles, as the paper counts them.
-    fn passes(of: MaskBuffer, place: Place, application: Application) -> (usize, usize) {
+    /// Passes of the scene and rectangles, as the paper counts them, and the rectangles that are no
+    /// step of the paper.
+    fn passes(of: MaskBuffer, place: Place, application: Application) -> [usize; 3] {
         let plan = MaskPlan {
             of: Counting::Mask(of),
             place,
             application,
         };
-        let (mut scene, mut rectangles) = (0, 0);
+        let [mut scene, mut rectangles, mut ours] = [0; 3];
         for step in plan.steps() {
+            use Rectangle::{Darken, Limit, Stretch};
             match (step, place) {
-                (Step::Surface | Step::Ambient, _) | (Step::Light, Place::Layers) => scene += 1,
+                (Step::Surface | Step::Ambient, _) => scene += 1,
+                (Step::Light, Place::Layers | Place::LowLayers) => scene += 1,
+                (Step::Rectangle(Stretch | Limit | Darken), _) => ours += 1,
                 (Step::Rectangle(_), _) | (Step::Light, Place::Frame) => rectangles += 1,
                 (Step::Stencil | Step::Start | Step::Raise | Step::Lower, _) => {}
             }
         }
-        (scene, rectangles)
+        [scene, rectangles, ours]
     }
 
     #[test]
-    fn passes_are_those_of_table_1() {
+    fn passes_are_those_of_table_1_and_what_floats_take_besides() {
         use MaskBuffer::{Alpha, Max, Screen};
         let applications = [Black, Ambient, Attenuated];
         let alpha = applications.map(|a| passes(Alpha, Place::Frame, a));
-        assert_eq!(alpha, [(1, 4), (2, 4), (1, 4)]);
+        assert_eq!(alpha, [[1, 4, 1], [2, 4, 1], [1, 4, 1]]);
         let screen = applications.map(|a| passes(Screen, Place::Layers, a));
-        assert_eq!(screen, [(2, 3), (3, 3), (2, 3)]);
-        // In brackets there: with the maximum blend equation.
-        assert_eq!(passes(Max, Place::Frame, Attenuated), (1, 2));
-        assert_eq!(passes(Max, Place::Layers, Attenuated), (2, 1));
-        // Not in the paper: one more rectangle from attenuated to black.
-        assert_eq!(passes(Max, Place::Frame, Black), (1, 3));
-        assert_eq!(passes(Max, Place::Frame, Ambient), (2, 3));
+        assert_eq!(screen, [[2, 3, 0], [3, 3, 0], [2, 3, 0]]);
+        // In brackets there: with the maximum blend equation, which attenuates and no more.
+        assert_eq!(passes(Max, Place::Frame, Attenuated), [1, 2, 1]);
+        assert_eq!(passes(Max, Place::Layers, Attenuated), [2, 1, 1]);
+        assert_eq!(passes(Max, Place::Frame, Black), [1, 2, 2]);
+        assert_eq!(passes(Max, Place::Frame, Ambient), [2, 2, 2]);
     }
 
     /// The arithmetic of a plan on one value, as the blend equations have it.
@@ -217,7 +226,7 @@ mod tests {
             if let Step::Rectangle(rectangle) = step {
                 v = stored(match rectangle {
                     Rectangle::Double => 2.0 * v,
-                    Rectangle::Clamp => v.min(1.0),
+                    Rectangle::Clamp | Rectangle::Limit => v.min(1.0),
                     Rectangle::Invert => 1.0 - v,
                     Rectangle::AddHalf => v + 0.5,
                     Rectangle::AtLeastHalf => v.max(0.5),
@@ -253,6 +262,23 @@ mod tests {
                             );
                         }
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_count_below_zero_is_no_brighter_than_lit() {
+        for buffer in [MaskBuffer::Screen, MaskBuffer::Alpha, MaskBuffer::Max] {
+            for application in [Black, Ambient, Attenuated] {
+                let plan = MaskPlan {
+                    of: Counting::Mask(buffer),
+                    place: Place::Frame,
+                    application,
+                };
+                for (eye, lowered) in [(0, 1), (0, 2), (1, 2), (0, 20)] {
+                    let found = value(plan, eye, 0, lowered);
+                    assert!((0.0..=1.0).contains(&found), "{plan:?}: {found}");
                 }
             }
         }

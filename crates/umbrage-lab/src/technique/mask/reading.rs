@@ -1,6 +1,8 @@
 //! How a light's shader reads its mask: the texel of its pixel, or filtered from a smaller layer.
 
+use super::slots::SLOT_WGSL;
 use crate::gpu::Gpu;
+use crate::technique::binding::{STORAGE, bind, buffer, layout, texture};
 
 /// How lights read their masks.
 #[derive(Debug)]
@@ -12,30 +14,16 @@ pub(crate) struct MaskReading {
 impl MaskReading {
     /// For any stack of layers.
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let slots = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
+        let types = [
+            texture(
+                wgpu::TextureSampleType::Float { filterable: true },
+                wgpu::TextureViewDimension::D2Array,
+            ),
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            buffer(STORAGE),
+        ];
         Self {
-            layout: gpu
-                .device
-                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                    label: Some("masks"),
-                    entries: &[entry(0, texture), entry(1, sampler), entry(2, slots)],
-                }),
+            layout: layout(gpu, "masks", wgpu::ShaderStages::FRAGMENT, types),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("masks"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -51,7 +39,8 @@ impl MaskReading {
             1 => "textureLoad(masks, vec2i(pixel), slot.layer, 0)",
             _ => "textureSampleLevel(masks, mask_sampler, uv, slot.layer, 0.0)",
         };
-        include_str!("../../shaders/mask_reading.wgsl").replace("READ_MASKS", read)
+        let reading = include_str!("../../shaders/mask_reading.wgsl");
+        format!("{SLOT_WGSL}\n{}", reading.replace("READ_MASKS", read))
     }
 
     /// Binds a stack of layers and the lights' slots in it.
@@ -70,14 +59,6 @@ impl MaskReading {
             wgpu::BindingResource::Sampler(&self.sampler),
             slots.as_entire_binding(),
         ];
-        let entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("masks"),
-            layout: &self.layout,
-            entries: &entries,
-        })
+        bind(gpu, "masks", &self.layout, resources)
     }
 }

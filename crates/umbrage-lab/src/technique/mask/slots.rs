@@ -8,6 +8,9 @@ use super::pack::Placed;
 use super::plan::MaskPlan;
 
 /// `struct Slot` of the shaders.
+pub(crate) const SLOT_WGSL: &str = include_str!("../../shaders/mask_slot.wgsl");
+
+/// One of them.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Slot {

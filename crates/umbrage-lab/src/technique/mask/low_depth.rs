@@ -1,0 +1,107 @@
+//! The depth that volumes count against at a lower resolution: the world once more, without a
+//! surface to shade.
+//!
+//! Vertices are those of `primary.wgsl`, by the rules of the surface's own: the same clip positions,
+//! the same triangles left out.
+
+use umbrage::{CLIP_WGSL, ShadowRenderer};
+use wgpu::{BindGroup, Texture};
+
+use crate::gbuffer::{DEPTH_STENCIL, whole};
+use crate::gpu::{Gpu, GpuError};
+use crate::technique::binding::{STORAGE, bind, buffer, layout};
+
+/// Draws depth and nothing else.
+#[derive(Debug)]
+pub(super) struct LowDepth {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl LowDepth {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let source = format!(
+            "{CLIP_WGSL}\n{}",
+            include_str!("../../shaders/primary.wgsl")
+        );
+        let device = &gpu.device;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("low depth"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let types = [
+            buffer(wgpu::BufferBindingType::Uniform),
+            buffer(STORAGE),
+            buffer(STORAGE),
+        ];
+        let layout = layout(gpu, "low depth", wgpu::ShaderStages::VERTEX, types);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("low depth"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("low depth"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState {
+                unclipped_depth: gpu.depth_clamp,
+                ..wgpu::PrimitiveState::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_STENCIL,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: None,
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { pipeline, layout }
+    }
+
+    /// Binds view and world of `shadows`.
+    pub(super) fn bind(&self, gpu: &Gpu, shadows: &ShadowRenderer) -> Result<BindGroup, GpuError> {
+        let buffers = shadows.world_buffers();
+        let (positions, triangles) = buffers.ok_or(umbrage::RenderError::NoWorld)?;
+        let buffers = [shadows.view_buffer(), positions, triangles];
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        Ok(bind(gpu, "low depth", &self.layout, resources))
+    }
+
+    /// Clears depth and stencil, and draws so many triangles.
+    pub(super) fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        world: &BindGroup,
+        triangles: u32,
+        depth: &Texture,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("low depth"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &whole(depth),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Store,
+                }),
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, world, &[]);
+        pass.draw(0..3 * triangles, 0..1);
+    }
+}
