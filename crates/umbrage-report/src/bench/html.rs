@@ -167,6 +167,24 @@ mod tests {
     }
 
     #[test]
+    fn times_alone_make_a_table_and_no_plot_of_errors() {
+        let mut report = BenchReport::default();
+        for (scene, ms) in [("a.glb", 2.0), ("b.glb", 3.0)] {
+            for method in ["none", "counter"] {
+                let mut timed = BenchRow::new(method, (scene, "auto", [64, 48]));
+                timed.set_frame_times(&[ms]);
+                report.push(timed);
+            }
+        }
+        let unjudged = html(&report);
+        assert!(
+            unjudged.contains("errors were not judged") && !unjudged.contains("class=\"lane\"")
+        );
+        report.push(row("a.glb", "brute", 4.0, 0));
+        assert!(html(&report).contains("class=\"lane\""));
+    }
+
+    #[test]
     fn growth_is_plotted_only_where_something_grows() {
         let mut report = BenchReport::default();
         report.push(row("a.glb", "counter", 2.0, 0));

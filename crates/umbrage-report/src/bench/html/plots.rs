@@ -13,6 +13,14 @@ const ERROR_AXIS: &str = "wrong pixel-lights, ppm";
 /// For a phone in portrait.
 const NARROW: f64 = 344.0;
 
+/// What stands in the place of a plot of time against nothing.
+const NOT_JUDGED: &str = "errors were not judged, so times are in the table only";
+
+/// Whether any of its methods was.
+fn is_judged(plot: &TradeOff) -> bool {
+    plot.spots.iter().any(|spot| spot.y != Height::Unknown)
+}
+
 /// The same plot for wide and for narrow windows.
 fn both(wide: [f64; 2], narrow: [f64; 2], svg: impl Fn([f64; 2]) -> String) -> String {
     format!(
@@ -62,6 +70,12 @@ pub(super) fn over_all_section(report: &BenchReport, looks: &Looks) -> String {
         floor: Some((1.0, "none: the frame without shadows".into())),
         spots: spots.collect(),
     };
+    if !is_judged(&plot) {
+        return format!(
+            "<section id=\"over-all\"><h2>Over all views</h2><p>{NOT_JUDGED}.</p>{}</section>",
+            tables::over_all_table(report, &all)
+        );
+    }
     format!(
         "<section id=\"over-all\"><h2>Over all views</h2><div class=\"over-all\">\
          <figure>{}<figcaption>Left is faster, down is more exact; whiskers reach from the best to \
@@ -97,9 +111,16 @@ pub(super) fn view_figure(report: &BenchReport, view: &View, looks: &Looks) -> S
             .map(|ms| (ms, format!("none: {} ms without shadows", figure(ms)))),
         spots: spots.collect(),
     };
-    if plot.spots.is_empty() {
+    let missing = if plot.spots.is_empty() {
+        Some("no method has figures")
+    } else if !is_judged(&plot) {
+        Some(NOT_JUDGED)
+    } else {
+        None
+    };
+    if let Some(missing) = missing {
         return format!(
-            "<figure><figcaption>{}: no method has figures.</figcaption></figure>",
+            "<figure><figcaption>{}: {missing}.</figcaption></figure>",
             escape(&view_name(view))
         );
     }
