@@ -374,6 +374,11 @@ pub(crate) struct Common {
     /// counter: z-pass from the eye count; counter-zfail: both caps for every light; none: no
     /// shadows.
     ///
+    /// counter-finite: volumes that end outside the light's range; counter-finite-naive: at it, which
+    /// is too near. brute: every triangle its own volume. crow: edges that point to two faces, right
+    /// on two-manifolds. extrude: a static buffer that the vertex shader opens up, right on closed
+    /// meshes; extrude-face-weights and extrude-vertex-weights turn the normals of skinned characters
+    ///
     /// Without a stencil (Roettger, Irion and Ertl): mask-screen doubles and halves an 8-bit mask
     /// of three values, normalised by three rectangles; it can represent two layers on the way to a
     /// count, and beyond may show lit what is in shadow. mask-alpha: the same in the frame buffer's

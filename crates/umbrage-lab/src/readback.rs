@@ -40,6 +40,32 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuEr
         .collect())
 }
 
+/// Records a copy of a buffer that [`read_items`] can read once the encoder is submitted.
+pub(crate) fn record_copy(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    buffer: &wgpu::Buffer,
+) -> wgpu::Buffer {
+    let readable = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readable copy"),
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    encoder.copy_buffer_to_buffer(buffer, 0, &readable, 0, readable.size());
+    readable
+}
+
+/// Reads the whole items that a mappable buffer holds.
+pub(crate) fn read_items<T: bytemuck::Pod>(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+) -> Result<Vec<T>, GpuError> {
+    let bytes = read_buffer(gpu, buffer)?;
+    let whole = bytes.len() / size_of::<T>() * size_of::<T>();
+    Ok(bytemuck::pod_collect_to_vec(&bytes[..whole]))
+}
+
 /// Reads a mappable buffer.
 pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let lost = |e: String| GpuError::Readback(e);

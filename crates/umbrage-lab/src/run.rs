@@ -6,7 +6,7 @@ use umbrage::{Frame, LightCalls, ShadowRenderer};
 use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
 use crate::gpu::{Gpu, GpuError};
 use crate::method::Method;
-use crate::readback::read_buffer;
+use crate::readback::{read_items, record_copy};
 use crate::stage::{Stage, StageLight};
 use crate::technique::{Given, Technique};
 use crate::timer::Timer;
@@ -87,22 +87,14 @@ fn calls_of(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuE
     let Some(calls) = shadows.calls() else {
         return Ok(Vec::new());
     };
-    let readable = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("calls, readable"),
-        size: calls.size(),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
     let mut encoder = gpu
         .device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor {
             label: Some("calls"),
         });
-    encoder.copy_buffer_to_buffer(calls, 0, &readable, 0, readable.size());
+    let readable = record_copy(gpu, &mut encoder, calls);
     gpu.queue.submit([encoder.finish()]);
-    let bytes = read_buffer(gpu, &readable)?;
-    let whole = bytes.len() / size_of::<LightCalls>() * size_of::<LightCalls>();
-    Ok(bytemuck::pod_collect_to_vec(&bytes[..whole]))
+    read_items(gpu, &readable)
 }
 
 /// A target that no light was added to yet.
@@ -116,6 +108,17 @@ pub(crate) fn light_pass<'e>(
     targets: &Targets,
     color: &wgpu::Texture,
     load: wgpu::LoadOp<wgpu::Color>,
+) -> wgpu::RenderPass<'e> {
+    stencil_pass(encoder, targets, color, load, wgpu::LoadOp::Load)
+}
+
+/// The same with a stencil that begins as `stencil` says.
+pub(crate) fn stencil_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    targets: &Targets,
+    color: &wgpu::Texture,
+    load: wgpu::LoadOp<wgpu::Color>,
+    stencil: wgpu::LoadOp<u32>,
 ) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("lights"),
@@ -132,7 +135,7 @@ pub(crate) fn light_pass<'e>(
             view: &whole(&targets.depth),
             depth_ops: None,
             stencil_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Load,
+                load: stencil,
                 store: wgpu::StoreOp::Store,
             }),
         }),

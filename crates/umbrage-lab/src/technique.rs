@@ -7,12 +7,11 @@
 mod binding;
 mod extrude;
 mod mask;
+mod one_pass;
 mod oracle;
 mod ray_trace;
 mod shadow_map;
-mod stencil;
 mod unseen;
-mod unshadowed;
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -23,18 +22,17 @@ use umbrage::{Frame, ShadowRenderer, Uploaded, View};
 use crate::application::Application;
 use crate::gbuffer::Targets;
 use crate::gpu::{Gpu, GpuError};
-use crate::light_pass::LightDraw;
+use crate::light_pass::{LightDraw, LitBy};
 use crate::method::{Counting, MaskBuffer, Method};
 use crate::stage::{Stage, StageLight};
 
 use extrude::Extrude;
 pub(crate) use mask::Overflow;
 use mask::{InFrame, InLayers};
+use one_pass::OnePass;
 use oracle::OracleMask;
 use ray_trace::RayTrace;
 use shadow_map::ShadowMap;
-use stencil::Stencil;
-use unshadowed::Unshadowed;
 
 /// What a technique is given to draw a frame with.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +105,7 @@ pub(crate) fn technique(
         | Method::CounterZFail
         | Method::CounterFinite(_)
         | Method::Brute
-        | Method::Crow => Box::new(Stencil::new(gpu, shadows, draw)),
+        | Method::Crow => Box::new(OnePass::new(gpu, shadows, draw, LitBy::Stencil)),
         Method::Mask(buffer @ (MaskBuffer::Alpha | MaskBuffer::Max)) => {
             Box::new(InFrame::new(gpu, shadows, draw, buffer, application))
         }
@@ -123,6 +121,6 @@ pub(crate) fn technique(
         Method::ShadowMap { texels } => Box::new(ShadowMap::new(gpu, shadows, draw, texels)?),
         Method::Oracle => Box::new(OracleMask::new(gpu, shadows, draw)),
         Method::RayTrace => Box::new(RayTrace::new(gpu, shadows, draw)),
-        Method::None => Box::new(Unshadowed::new(gpu, shadows, draw)),
+        Method::None => Box::new(OnePass::new(gpu, shadows, draw, LitBy::Everything)),
     })
 }

@@ -31,6 +31,7 @@ use umbrage::{CLIP_WGSL, ShadowRenderer};
 use umbrage_core::world::{Reach, World};
 use wgpu::util::DeviceExt as _;
 
+use super::binding::{STORAGE, bind, buffer, layout};
 use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};
 use crate::gbuffer::DEPTH_STENCIL;
@@ -92,7 +93,12 @@ impl Extrude {
         normals: Normals,
     ) -> Self {
         let device = &gpu.device;
-        let layout = layout(device);
+        let uniform = buffer(wgpu::BufferBindingType::Uniform);
+        let storage = buffer(STORAGE);
+        let types = [
+            uniform, uniform, storage, storage, storage, storage, storage,
+        ];
+        let layout = layout(gpu, "extrude", wgpu::ShaderStages::VERTEX, types);
         let constants = [(
             "normals",
             match normals {
@@ -220,18 +226,8 @@ impl Technique for Extrude {
         let buffers = [
             view, &first, positions, triangles, &lights, at_rest, &joints,
         ];
-        let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        self.bind_group = Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("extrude"),
-            layout: &self.layout,
-            entries: &entries,
-        }));
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        self.bind_group = Some(bind(given.gpu, "extrude", &self.layout, resources));
         Ok(())
     }
 
@@ -401,31 +397,6 @@ fn close(world: &World, of: &[u32], corners: &mut Vec<u32>) -> Pairing {
         edges,
         unpaired: checklist.values().map(Vec::len).sum(),
     }
-}
-
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let uniform = wgpu::BufferBindingType::Uniform;
-    let types = [
-        uniform, uniform, storage, storage, storage, storage, storage,
-    ];
-    let entries: Vec<_> = (0..)
-        .zip(types)
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::VERTEX,
-            ty: wgpu::BindingType::Buffer {
-                ty,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        })
-        .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("extrude"),
-        entries: &entries,
-    })
 }
 
 #[cfg(test)]

@@ -4,11 +4,10 @@
 //! very frame. So they are read back with the next, and count if view, lights and world are the same:
 //! other methods then spare exactly the lights that volumes spare, and no shadow is ever late.
 
-use bytemuck::pod_read_unaligned;
 use umbrage::{Light, LightCalls, View};
 
 use crate::gpu::{Gpu, GpuError};
-use crate::readback::read_buffer;
+use crate::readback::{read_items, record_copy};
 use crate::technique::Given;
 
 /// What a frame was drawn from.
@@ -61,20 +60,12 @@ impl Unseen {
         let Some(calls) = given.shadows.calls().filter(|_| self.known.is_none()) else {
             return;
         };
-        let readable = given.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("calls, readable"),
-            size: calls.size(),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        encoder.copy_buffer_to_buffer(calls, 0, &readable, 0, readable.size());
+        let readable = record_copy(given.gpu, encoder, calls);
         self.calls = Some((Frame::of(given), readable));
     }
 }
 
 fn read(gpu: &Gpu, calls: &wgpu::Buffer) -> Result<Vec<bool>, GpuError> {
-    let bytes = read_buffer(gpu, calls)?;
-    let calls = bytes.chunks_exact(size_of::<LightCalls>());
-    let unseen = |call: &[u8]| pod_read_unaligned::<LightCalls>(call).light.instance_count == 0;
-    Ok(calls.map(unseen).collect())
+    let calls: Vec<LightCalls> = read_items(gpu, calls)?;
+    Ok(calls.iter().map(|c| c.light.instance_count == 0).collect())
 }

@@ -10,10 +10,9 @@ use std::ops::Range;
 use umbrage::{CountStep, FaceOptions, LightPath, ShadowRenderer, VolumeFaces};
 use wgpu::{CompareFunction, StencilFaceState, StencilOperation};
 
-use crate::gbuffer::whole;
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy, MASK};
-use crate::run::FROM_DARK;
+use crate::run::{FROM_DARK, stencil_pass};
 use crate::technique::{Given, Technique};
 
 /// Marks pixel-lights with more than `layers` on the way to their count.
@@ -97,25 +96,5 @@ fn counting_pass<'e>(
     target: &wgpu::Texture,
     load: wgpu::LoadOp<wgpu::Color>,
 ) -> wgpu::RenderPass<'e> {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("layers"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &whole(target),
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load,
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &whole(&given.targets.depth),
-            depth_ops: None,
-            stencil_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0),
-                store: wgpu::StoreOp::Store,
-            }),
-        }),
-        ..wgpu::RenderPassDescriptor::default()
-    })
+    stencil_pass(encoder, given.targets, target, load, wgpu::LoadOp::Clear(0))
 }

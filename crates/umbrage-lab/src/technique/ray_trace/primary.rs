@@ -7,6 +7,7 @@ use wgpu::{TextureFormat, TextureUsages};
 use crate::gbuffer::{DEPTH_STENCIL, texture, whole};
 use crate::gpu::{Gpu, GpuError};
 use crate::technique::Given;
+use crate::technique::binding::bind;
 
 const ID: TextureFormat = TextureFormat::R32Uint;
 
@@ -78,19 +79,9 @@ impl Primary {
         let buffers = given.shadows.world_buffers();
         let (positions, triangles) = buffers.ok_or(umbrage::RenderError::NoWorld)?;
         let buffers = [given.shadows.view_buffer(), positions, triangles];
-        let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let device = &given.gpu.device;
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("primary triangles"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        let layout = self.pipeline.get_bind_group_layout(0);
+        let bind_group = bind(given.gpu, "primary triangles", &layout, resources);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("primary triangles"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

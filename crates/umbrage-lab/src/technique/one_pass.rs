@@ -1,4 +1,5 @@
-//! Volumes in the stencil: each light's volume, then the light where the count came out as zero.
+//! Nothing between the lights of a frame: each light's volume in the stencil, then the light where
+//! the count came out as zero; or, without volumes, the light wherever it reaches: the floor.
 
 use std::ops::Range;
 
@@ -9,17 +10,22 @@ use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
 use crate::run::{FROM_DARK, light_pass};
 
-/// All of the plan's volumes and lights in one pass.
+/// All of the plan's volumes, if it has any, and lights in one pass.
 #[derive(Debug)]
-pub(crate) struct Stencil(LightPass);
+pub(crate) struct OnePass(LightPass);
 
-impl Stencil {
-    pub(crate) fn new(gpu: &Gpu, shadows: &ShadowRenderer, draw: LightDraw) -> Self {
-        Self(LightPass::new(gpu, shadows, draw, LitBy::Stencil))
+impl OnePass {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        shadows: &ShadowRenderer,
+        draw: LightDraw,
+        lit_by: LitBy<'_>,
+    ) -> Self {
+        Self(LightPass::new(gpu, shadows, draw, lit_by))
     }
 }
 
-impl Technique for Stencil {
+impl Technique for OnePass {
     fn prepare(&mut self, given: &Given<'_>) -> Result<(), GpuError> {
         self.0.prepare(given);
         Ok(())
