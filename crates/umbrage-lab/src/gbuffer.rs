@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
 use wgpu::util::DeviceExt as _;
-use wgpu::{Texture, TextureFormat, TextureUsages, TextureView};
+use wgpu::{ShaderStages, Texture, TextureFormat, TextureUsages, TextureView};
 
+use crate::binding::{self, STORAGE, bind, buffer, layout};
 use crate::gpu::{Gpu, GpuError};
 use crate::stage::Stage;
 
@@ -113,9 +114,6 @@ pub struct GBufferPass {
 impl GBufferPass {
     /// Uploads what shading needs; positions are the shadow renderer's.
     pub fn new(gpu: &Gpu, stage: &Stage, shadows: &ShadowRenderer) -> Result<Self, GpuError> {
-        let (positions, triangles) = shadows
-            .world_buffers()
-            .ok_or(umbrage::RenderError::NoWorld)?;
         let world = &stage.world;
         let soup = &stage.soup;
         let device = &gpu.device;
@@ -166,29 +164,31 @@ impl GBufferPass {
             .flat_map(|&t| [3 * t, 3 * t + 1, 3 * t + 2])
             .collect();
 
-        let pipeline = pipeline(gpu);
-        let buffers = [shadows.view_buffer(), positions, triangles]
-            .into_iter()
-            .chain([&materials_of, &normals, &uvs, &materials]);
-        let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("gbuffer"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let stages = ShaderStages::VERTEX_FRAGMENT;
+        let attributes = layout(gpu, "gbuffer", stages, [buffer(STORAGE); 4]);
+        let texture = binding::texture(
+            wgpu::TextureSampleType::Float { filterable: true },
+            wgpu::TextureViewDimension::D2,
+        );
+        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let images = layout(
+            gpu,
+            "base colour",
+            ShaderStages::FRAGMENT,
+            [texture, sampler],
+        );
+        let world_layout = shadows.world_bind_group_layout();
+        let pipeline = pipeline(gpu, [&attributes, &images, world_layout]);
+        let buffers = [&materials_of, &normals, &uvs, &materials];
+        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+        let bind_group = bind(gpu, "gbuffer", &attributes, resources);
         let mut batches = Vec::new();
         let mut end = 0;
         for batch in order.chunk_by(|&a, &b| image_of(a as usize) == image_of(b as usize)) {
             let start = end;
             end += 3 * batch.len() as u32;
             let image = image_of(batch[0] as usize).map(|i| &stage.scene.images[i as usize]);
-            batches.push((image_bind_group(gpu, &pipeline, image), start..end));
+            batches.push((image_bind_group(gpu, &images, image), start..end));
         }
         Ok(Self {
             bind_group,
@@ -230,6 +230,7 @@ impl GBufferPass {
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
+        shadows: &ShadowRenderer,
         targets: &Targets,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
@@ -264,6 +265,7 @@ impl GBufferPass {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_bind_group(2, shadows.world_bind_group(), &[]);
         pass.set_index_buffer(self.corners.slice(..), wgpu::IndexFormat::Uint32);
         for (image, corners) in &self.batches {
             pass.set_bind_group(1, image, &[]);
@@ -277,9 +279,13 @@ fn pack(n: glam::Vec3) -> u32 {
     u32::from_le_bytes([byte(n.x), byte(n.y), byte(n.z), 0])
 }
 
-fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
+fn pipeline(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 3]) -> wgpu::RenderPipeline {
     let device = &gpu.device;
-    let source = format!("{CLIP_WGSL}\n{}", include_str!("shaders/gbuffer.wgsl"));
+    let source = format!(
+        "{CLIP_WGSL}\n{}\n{}",
+        world_wgsl(2),
+        include_str!("shaders/gbuffer.wgsl")
+    );
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("gbuffer"),
         source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
@@ -287,7 +293,13 @@ fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
     let targets = [ALBEDO, NORMAL, DISTANCE].map(|format| Some(format.into()));
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("gbuffer"),
-        layout: None,
+        layout: Some(
+            &device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("gbuffer"),
+                bind_group_layouts: &layouts.map(Some),
+                immediate_size: 0,
+            }),
+        ),
         vertex: wgpu::VertexState {
             module: &module,
             entry_point: Some("vertex"),
@@ -319,7 +331,7 @@ fn pipeline(gpu: &Gpu) -> wgpu::RenderPipeline {
 
 fn image_bind_group(
     gpu: &Gpu,
-    pipeline: &wgpu::RenderPipeline,
+    layout: &wgpu::BindGroupLayout,
     image: Option<&umbrage_scene::Image>,
 ) -> wgpu::BindGroup {
     let white = ([1, 1], vec![255u8; 4]);
@@ -351,18 +363,9 @@ fn image_bind_group(
         min_filter: wgpu::FilterMode::Linear,
         ..wgpu::SamplerDescriptor::default()
     });
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("base colour"),
-        layout: &pipeline.get_bind_group_layout(1),
-        entries: &[
-            wgpu::BindGroupEntry {
-                binding: 0,
-                resource: wgpu::BindingResource::TextureView(&whole(&texture)),
-            },
-            wgpu::BindGroupEntry {
-                binding: 1,
-                resource: wgpu::BindingResource::Sampler(&sampler),
-            },
-        ],
-    })
+    let resources = [
+        wgpu::BindingResource::TextureView(&whole(&texture)),
+        wgpu::BindingResource::Sampler(&sampler),
+    ];
+    bind(gpu, "base colour", layout, resources)
 }

@@ -5,6 +5,7 @@
 pub mod actors;
 pub mod application;
 pub mod auto_camera;
+mod binding;
 pub mod gbuffer;
 pub mod gpu;
 pub mod heat;

@@ -38,8 +38,12 @@ impl Run {
         encoder: &mut wgpu::CommandEncoder,
         timer: Option<&Timer>,
     ) {
-        self.surface
-            .record(encoder, &self.targets, timer.map(|t| t.writes(0)));
+        self.surface.record(
+            encoder,
+            &self.shadows,
+            &self.targets,
+            timer.map(|t| t.writes(0)),
+        );
         let depth = depth_only(&self.targets.depth);
         let writes = timer.map(|t| t.compute_writes(2));
         self.shadows

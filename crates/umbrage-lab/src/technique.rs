@@ -4,7 +4,6 @@
 //! the view, and which pixels each light reaches. A technique then finds the shadows of a range of
 //! lights and draws these lights into the target, be it light that adds up or bits of a mask.
 
-mod binding;
 mod extrude;
 mod mask;
 mod one_pass;

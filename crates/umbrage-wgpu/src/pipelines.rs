@@ -8,7 +8,7 @@ use wgpu::{
     StencilFaceState, StencilOperation, StencilState,
 };
 
-use crate::{CLIP_WGSL, RendererOptions, VOLUME_WGSL, VolumeColor};
+use crate::{CLIP_WGSL, RendererOptions, VOLUME_WGSL, VolumeColor, world_wgsl};
 
 #[derive(Debug)]
 pub(crate) struct Pipelines {
@@ -56,15 +56,18 @@ impl Pipelines {
     pub(crate) fn new(
         device: &Device,
         options: &RendererOptions<'_>,
-        layout: &BindGroupLayout,
+        layouts: [&BindGroupLayout; 2],
     ) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage volume"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!("{CLIP_WGSL}\n{VOLUME_WGSL}"))),
+            source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
+                "{CLIP_WGSL}\n{}\n{VOLUME_WGSL}",
+                world_wgsl(1)
+            ))),
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("umbrage volume"),
-            bind_group_layouts: &[Some(layout)],
+            bind_group_layouts: &layouts.map(Some),
             immediate_size: 0,
         });
         let build = |label, entry, counts| {

@@ -13,12 +13,12 @@ use umbrage_core::cull::{Cull, Culls};
 use umbrage_core::frame::{LightPath, LightPlan};
 use umbrage_core::{Light, LightShape, View};
 use wgpu::{
-    BindGroupLayout, BindingType, Buffer, BufferBindingType, BufferUsages, ComputePipeline, Device,
-    Queue, ShaderStages, TextureView,
+    BindGroup, BindGroupLayout, BindingType, Buffer, BufferBindingType, BufferUsages,
+    ComputePipeline, Device, Queue, ShaderStages, TextureView,
 };
 
 use crate::buffers::{Growing, Written};
-use crate::{CLIP_WGSL, Frame, RenderError};
+use crate::{CLIP_WGSL, Frame, RenderError, world_wgsl};
 
 /// The indirect calls of one light, as the shader writes them.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -98,9 +98,7 @@ pub(crate) struct Receivers {
 
 /// What the shader reads and does not own.
 pub(crate) struct Inputs<'a> {
-    pub(crate) view: &'a Buffer,
-    pub(crate) positions: &'a Buffer,
-    pub(crate) edges: &'a Buffer,
+    pub(crate) world: &'a BindGroup,
     pub(crate) quads: &'a Buffer,
     pub(crate) spans: &'a Buffer,
     pub(crate) depth: &'a TextureView,
@@ -108,7 +106,11 @@ pub(crate) struct Inputs<'a> {
 
 impl Receivers {
     /// `None` where the device lacks what it takes.
-    pub(crate) fn new(device: &Device, sample_count: u32) -> Option<Self> {
+    pub(crate) fn new(
+        device: &Device,
+        sample_count: u32,
+        world_layout: &BindGroupLayout,
+    ) -> Option<Self> {
         let features = device.features();
         if sample_count != 1 || !features.contains(wgpu::Features::INDIRECT_FIRST_INSTANCE) {
             return None;
@@ -117,13 +119,14 @@ impl Receivers {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage receivers"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
-                "{CLIP_WGSL}\n{}",
+                "{CLIP_WGSL}\n{}\n{}",
+                world_wgsl(1),
                 include_str!("shaders/receivers.wgsl")
             ))),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("umbrage receivers"),
-            bind_group_layouts: &[Some(&layout)],
+            bind_group_layouts: &[Some(&layout), Some(world_layout)],
             immediate_size: 0,
         });
         let pipeline = |entry| {
@@ -190,9 +193,6 @@ impl Receivers {
             size: wgpu::BufferSize::new(u64::from(lights) * size_of::<PlanUniform>() as u64),
         });
         let resources = [
-            inputs.view.as_entire_binding(),
-            inputs.positions.as_entire_binding(),
-            inputs.edges.as_entire_binding(),
             inputs.quads.as_entire_binding(),
             plan,
             self.tiles.buffer.as_entire_binding(),
@@ -215,6 +215,7 @@ impl Receivers {
             timestamp_writes,
         });
         pass.set_bind_group(0, &bind_group, &[]);
+        pass.set_bind_group(1, inputs.world, &[]);
         pass.set_pipeline(&self.surface);
         let [columns, rows] = size.map(|side| side.div_ceil(TILE * 8));
         pass.dispatch_workgroups(columns, rows, 1);
@@ -267,8 +268,7 @@ fn bind_group_layout(device: &Device) -> BindGroupLayout {
         min_binding_size: None,
     };
     let storage = |read_only| buffer(BufferBindingType::Storage { read_only });
-    let mut types = vec![buffer(BufferBindingType::Uniform)];
-    types.extend([storage(true); 4]);
+    let mut types = vec![storage(true); 2];
     types.extend([storage(false); 3]);
     types.push(BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Depth,

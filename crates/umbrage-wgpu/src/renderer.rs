@@ -71,9 +71,10 @@ impl ShadowRenderer {
             return Err(RenderError::NoStencil(options.depth_stencil_format));
         }
         let layout = bind_group_layout(device);
+        let world = WorldBuffers::new(device);
         let growing = |label| Growing::new(device, label, BufferUsages::empty());
         Ok(Self {
-            pipelines: Pipelines::new(device, options, &layout),
+            pipelines: Pipelines::new(device, options, [&layout, &world.layout]),
             view: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("umbrage view"),
                 size: size_of::<ViewUniform>() as u64,
@@ -88,10 +89,10 @@ impl ShadowRenderer {
             distances: growing("umbrage distances"),
             extrusion: options.extrusion,
             light_count: 0,
-            world: WorldBuffers::new(device),
             bind_groups: None,
             layout,
-            receivers: Receivers::new(device, options.sample_count),
+            receivers: Receivers::new(device, options.sample_count, &world.layout),
+            world,
             found: Found::No,
             spans: growing("umbrage spans"),
             light_layout: light_layout(device),
@@ -101,18 +102,15 @@ impl ShadowRenderer {
     }
 
     /// Brings positions, edges and triangles on the GPU up to date: everything for a world not
-    /// seen yet, later what objects changed. True if [`ShadowRenderer::world_buffers`] were
-    /// replaced, so that the host's bind groups must be too.
+    /// seen yet, later what objects changed. True if [`ShadowRenderer::world_bind_group`] was
+    /// replaced.
     pub fn upload_world(
         &mut self,
         device: &Device,
         queue: &Queue,
         world: &World,
     ) -> Result<bool, RenderError> {
-        let bind_groups = self.bind_groups.take();
-        let written = self.world.update(device, queue, world)?;
-        self.bind_groups = bind_groups.filter(|_| !written.replaced);
-        Ok(written.replaced)
+        self.world.update(device, queue, world, &self.view)
     }
 
     /// Uploads what this frame's plan draws and the GPU does not have yet. One call a submission:
@@ -177,19 +175,13 @@ impl ShadowRenderer {
     }
 
     fn bind(&self, device: &Device, quads: &Buffer) -> BindGroup {
-        let [positions, edges, triangles] = self.world.buffers();
         let [caps, lights, distances] =
             [&self.caps, &self.lights, &self.distances].map(|growing| &growing.buffer);
-        let buffers = [
-            &self.view, positions, edges, triangles, quads, caps, lights, distances,
-        ];
-        let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
+        let buffers = [(0, quads), (1, caps), (2, lights), (3, distances)];
+        let entries = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        });
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("umbrage volume"),
             layout: &self.layout,
@@ -233,11 +225,11 @@ impl ShadowRenderer {
         if self.found == Found::No || self.light_count == 0 {
             return;
         }
-        let [positions, edges, _] = self.world.buffers();
+        let Some(world) = &self.world.bind_group else {
+            return;
+        };
         let inputs = Inputs {
-            view: &self.view,
-            positions,
-            edges,
+            world,
             quads: &self.quads.buffer,
             spans: &self.spans.buffer,
             depth,
@@ -258,7 +250,7 @@ impl ShadowRenderer {
         lights: std::ops::Range<usize>,
         mut draw_light: impl FnMut(&mut RenderPass<'_>, usize, &LightPlan),
     ) {
-        let Some(bind_groups) = &self.bind_groups else {
+        let (Some(bind_groups), Some(world)) = (&self.bind_groups, &self.world.bind_group) else {
             return;
         };
         let calls = self.calls();
@@ -285,6 +277,7 @@ impl ShadowRenderer {
             if let Some(calls) = calls.filter(|_| counted) {
                 pass.set_pipeline(&self.pipelines.clean);
                 pass.set_bind_group(0, bind_group, &[]);
+                pass.set_bind_group(1, world, &[]);
                 pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
             }
         }
@@ -301,7 +294,7 @@ impl ShadowRenderer {
         sides: [&wgpu::RenderPipeline; 2],
         caps: [&wgpu::RenderPipeline; 2],
     ) -> bool {
-        let Some(bind_groups) = &self.bind_groups else {
+        let (Some(bind_groups), Some(world)) = (&self.bind_groups, &self.world.bind_group) else {
             return false;
         };
         let calls = self.calls();
@@ -322,6 +315,7 @@ impl ShadowRenderer {
             counted = true;
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, bind_group, &[]);
+            pass.set_bind_group(1, world, &[]);
             match calls {
                 Some(calls) => {
                     pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
@@ -383,11 +377,21 @@ impl ShadowRenderer {
         }
     }
 
-    /// The uploaded positions (tightly packed f32 triples) and triangles (u32 triples), for the
-    /// host's depth pass; `None` before [`ShadowRenderer::upload_world`].
-    pub fn world_buffers(&self) -> Option<(&Buffer, &Buffer)> {
-        let [positions, _, triangles] = self.world.buffers();
-        self.world.is_filled().then_some((positions, triangles))
+    /// Layout of what [`world_wgsl`](crate::world_wgsl) reads, in vertex and compute shaders.
+    pub fn world_bind_group_layout(&self) -> &BindGroupLayout {
+        &self.world.layout
+    }
+
+    /// What [`world_wgsl`](crate::world_wgsl) reads, for the host's depth pass: the world, and the
+    /// view of the last [`ShadowRenderer::prepare`]. `None` before
+    /// [`ShadowRenderer::upload_world`], which may replace it.
+    pub fn world_bind_group(&self) -> Option<&BindGroup> {
+        self.world.bind_group.as_ref()
+    }
+
+    /// Bytes that positions, edges and triangles take on the GPU.
+    pub fn world_bytes(&self) -> u64 {
+        self.world.bytes()
     }
 
     /// The [`ViewUniform`] of the last [`ShadowRenderer::prepare`].
@@ -404,35 +408,39 @@ fn shader_distance(light: &LightPlan) -> f32 {
     }
 }
 
+/// Quads, caps, lights, distances.
 fn bind_group_layout(device: &Device) -> BindGroupLayout {
-    uniform_and_storage(device, "umbrage volume", ShaderStages::VERTEX, 7)
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    buffers_layout(device, "umbrage volume", ShaderStages::VERTEX, [storage; 4])
 }
 
+/// View, spans.
 fn light_layout(device: &Device) -> BindGroupLayout {
     let stages = ShaderStages::VERTEX | ShaderStages::COMPUTE;
-    uniform_and_storage(device, "umbrage light", stages, 1)
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let types = [wgpu::BufferBindingType::Uniform, storage];
+    buffers_layout(device, "umbrage light", stages, types)
 }
 
-/// A uniform buffer, then read-only storage buffers.
-fn uniform_and_storage(
+fn buffers_layout<const N: usize>(
     device: &Device,
     label: &str,
     visibility: ShaderStages,
-    storage_buffers: u32,
+    types: [wgpu::BufferBindingType; N],
 ) -> BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform)];
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    entries.extend((1..=storage_buffers).map(|binding| entry(binding, storage)));
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        })
+        .collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
         entries: &entries,

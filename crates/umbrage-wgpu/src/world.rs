@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use umbrage_core::world::{Extent, World};
-use wgpu::{Buffer, BufferUsages, Device, Queue};
+use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, Device, Queue, ShaderStages};
 
 use crate::RenderError;
 use crate::buffers::{Growing, Written};
@@ -16,6 +16,9 @@ pub(crate) struct WorldBuffers {
     edges: Growing,
     /// u32 triples.
     triangles: Growing,
+    pub(crate) layout: BindGroupLayout,
+    /// Of these buffers and a view, for `world.wgsl`.
+    pub(crate) bind_group: Option<BindGroup>,
     seen: Seen,
 }
 
@@ -44,13 +47,10 @@ impl WorldBuffers {
             positions: buffer("umbrage positions"),
             edges: buffer("umbrage edges"),
             triangles: buffer("umbrage triangles"),
+            layout: layout(device),
+            bind_group: None,
             seen: Seen::default(),
         }
-    }
-
-    /// Positions, edges, triangles.
-    pub(crate) fn buffers(&self) -> [&Buffer; 3] {
-        [&self.positions, &self.edges, &self.triangles].map(|b| &b.buffer)
     }
 
     /// Whether a world was uploaded.
@@ -58,8 +58,48 @@ impl WorldBuffers {
         self.seen.stamp != 0
     }
 
-    /// Brings the buffers up to date with the world.
+    /// What the three take.
+    pub(crate) fn bytes(&self) -> u64 {
+        let arrays = [&self.positions, &self.edges, &self.triangles];
+        arrays.map(|b| b.buffer.size()).iter().sum()
+    }
+
+    /// Brings the buffers up to date with the world; true if the bind group, which has `view`, is
+    /// another than before.
     pub(crate) fn update(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        world: &World,
+        view: &Buffer,
+    ) -> Result<bool, RenderError> {
+        let bind_group = self.bind_group.take();
+        let written = self.write(device, queue, world)?;
+        self.bind_group = bind_group.filter(|_| !written.replaced);
+        let is_new = self.bind_group.is_none();
+        if is_new {
+            self.bind_group = Some(self.bind(device, view));
+        }
+        Ok(is_new)
+    }
+
+    fn bind(&self, device: &Device, view: &Buffer) -> BindGroup {
+        let arrays = [&self.positions, &self.edges, &self.triangles].map(|b| &b.buffer);
+        let entries: Vec<_> = (0..)
+            .zip(std::iter::once(view).chain(arrays))
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("umbrage world"),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+
+    fn write(
         &mut self,
         device: &Device,
         queue: &Queue,
@@ -117,6 +157,35 @@ impl WorldBuffers {
         };
         Ok(written)
     }
+}
+
+/// What `world.wgsl` declares. Compute shaders read no triangles: with these they would pass the
+/// eight storage buffers that every device has.
+fn layout(device: &Device) -> BindGroupLayout {
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let everywhere = ShaderStages::VERTEX | ShaderStages::COMPUTE;
+    let entries: Vec<_> = (0..)
+        .zip([
+            (wgpu::BufferBindingType::Uniform, everywhere),
+            (storage, everywhere),
+            (storage, everywhere),
+            (storage, ShaderStages::VERTEX),
+        ])
+        .map(|(binding, (ty, visibility))| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            },
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("umbrage world"),
+        entries: &entries,
+    })
 }
 
 fn in_bytes(ranges: &[Range<u32>], item: usize) -> impl Iterator<Item = Range<usize>> {

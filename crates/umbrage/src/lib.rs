@@ -56,8 +56,8 @@
 //! # In a frame: volumes to a shadow mask
 //!
 //! The host owns device, queue, encoder and depth buffer. Its depth pass computes clip positions
-//! with [`CLIP_WGSL`] from the world's buffers ([`ShadowRenderer::world_buffers`]), so that depth
-//! agrees with the volumes to the last bit. Then, in one pass for all lights:
+//! with [`CLIP_WGSL`] from what [`world_wgsl`] reads ([`ShadowRenderer::world_bind_group`]), so that
+//! depth agrees with the volumes to the last bit. Then, in one pass for all lights:
 //!
 //! ```no_run
 //! # use umbrage::*;
@@ -101,5 +101,5 @@ pub use umbrage_core::{Casting, Cull, Culls, Fingerprint, Light, LightShape, Mes
 pub use umbrage_wgpu::{
     CLIP_WGSL, Call, CountStep, FaceOptions, Frame, LIGHT_STENCIL, LightCalls, RenderError,
     RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces,
-    check_storage, light_wgsl,
+    check_storage, light_wgsl, world_wgsl,
 };

@@ -2,7 +2,6 @@
 // A vertex index is three times a triangle's number plus its corner; the instance index is the
 // light's number.
 
-@group(0) @binding(0) var<uniform> view: View;
 struct SkinnedCorner {
     normal: vec3f,
     joints: vec4u,
@@ -10,37 +9,30 @@ struct SkinnedCorner {
 }
 
 // The first corner that has an entry in `skin`.
-@group(0) @binding(1) var<uniform> first_skinned: vec4u;
-@group(0) @binding(2) var<storage, read> positions: array<f32>;
-@group(0) @binding(3) var<storage, read> triangles: array<u32>;
+@group(0) @binding(0) var<uniform> first_skinned: vec4u;
 // Position and 1, or direction towards the light and 0.
-@group(0) @binding(4) var<storage, read> lights: array<vec4f>;
-@group(0) @binding(5) var<storage, read> skin: array<SkinnedCorner>;
+@group(0) @binding(1) var<storage, read> lights: array<vec4f>;
+@group(0) @binding(2) var<storage, read> skin: array<SkinnedCorner>;
 // What each joint does to normals.
-@group(0) @binding(6) var<storage, read> joints: array<mat3x3f>;
+@group(0) @binding(3) var<storage, read> joints: array<mat3x3f>;
 
 // 0: from the posed corners. 1: from rest, by the weights of the face. 2: by those of the vertex.
 override normals: u32 = 0u;
-
-fn position(vertex: u32) -> vec3f {
-    let i = 3u * vertex;
-    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
-}
 
 // The corner, or its image at infinity. As in the library's volumes, sides run a little below the
 // surface of the triangle whose edge they hang from, and caps tie with it.
 fn extruded(corner: u32, number: u32, is_cap: bool) -> vec4f {
     let light = lights[number];
     let first = corner / 3u * 3u;
-    let a = position(triangles[first]);
-    let b = position(triangles[first + 1u]);
-    let c = position(triangles[first + 2u]);
-    let p = position(triangles[corner]);
-    let q = array(a - view.eye, b - view.eye, c - view.eye);
+    let a = umbrage_corner(first);
+    let b = umbrage_corner(first + 1u);
+    let c = umbrage_corner(first + 2u);
+    let vertex = umbrage_corner(corner);
+    let q = array(umbrage_from_eye(a), umbrage_from_eye(b), umbrage_from_eye(c));
     let size = max(max(length(q[0]), length(q[1])), length(q[2]));
-    let edge_on = umbrage_eye_in_plane(cross(b - a, c - a), q[0], size);
     // The same for all three corners, to the last bit: a triangle goes or stays as a whole.
-    var normal = cross(b - a, c - a);
+    var normal = cross(umbrage_between(a, b), umbrage_between(a, c));
+    let edge_on = umbrage_eye_in_plane(normal, q[0], size);
     var on_plane = a;
     if normals > 0u && corner >= first_skinned.x {
         let bound = skin[corner - first_skinned.x];
@@ -50,18 +42,18 @@ fn extruded(corner: u32, number: u32, is_cap: bool) -> vec4f {
                 normal += bound.weights[i] * (joints[bound.joints[i]] * bound.normal);
             }
             // The article's own, corner by corner: normals and places differ, and so may answers.
-            on_plane = select(a, p, normals == 2u);
+            on_plane = select(a, vertex, normals == 2u);
         }
     }
-    if dot(normal, light.xyz - on_plane * light.w) > 0.0 {
+    if dot(normal, umbrage_from_light(on_plane, light)) < 0.0 {
         // As the depth pass leaves it out.
         if is_cap && edge_on {
             return UMBRAGE_NOWHERE;
         }
         let recede = select(1.0 - 1.0 / 2097152.0, 1.0, is_cap);
-        return umbrage_clip(view, p - view.eye, recede);
+        return umbrage_clip(umbrage_world_view, umbrage_from_eye(vertex), recede);
     }
-    return umbrage_clip(view, p * light.w - light.xyz, 0.0);
+    return umbrage_clip(umbrage_world_view, umbrage_from_light(vertex, light), 0.0);
 }
 
 @vertex

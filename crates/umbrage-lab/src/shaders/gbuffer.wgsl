@@ -7,15 +7,12 @@ struct Surface {
     params: vec4f,
 }
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<storage, read> positions: array<f32>;
-@group(0) @binding(2) var<storage, read> triangles: array<u32>;
-@group(0) @binding(3) var<storage, read> triangle_material: array<u32>;
+@group(0) @binding(0) var<storage, read> triangle_material: array<u32>;
 // One packed normal a corner, or a single entry where the scene has none.
-@group(0) @binding(4) var<storage, read> normals: array<u32>;
+@group(0) @binding(1) var<storage, read> normals: array<u32>;
 // One pair a corner, or a single entry where the scene has none.
-@group(0) @binding(5) var<storage, read> uvs: array<vec2f>;
-@group(0) @binding(6) var<storage, read> materials: array<Surface>;
+@group(0) @binding(2) var<storage, read> uvs: array<vec2f>;
+@group(0) @binding(3) var<storage, read> materials: array<Surface>;
 @group(1) @binding(0) var base_color_texture: texture_2d<f32>;
 @group(1) @binding(1) var base_color_sampler: sampler;
 
@@ -27,28 +24,22 @@ struct Varying {
     @location(3) @interpolate(flat) material: u32,
 }
 
-fn position(vertex: u32) -> vec3f {
-    let i = 3u * vertex;
-    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
-}
-
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32) -> Varying {
     let triangle = corner / 3u;
     let first = 3u * triangle;
-    let p = position(triangles[corner]);
-    let a = position(triangles[first]);
-    let b = position(triangles[first + 1u]);
-    let c = position(triangles[first + 2u]);
-    let face = cross(b - a, c - a);
-    let q = array(a - view.eye, b - view.eye, c - view.eye);
+    let a = umbrage_corner(first);
+    let b = umbrage_corner(first + 1u);
+    let c = umbrage_corner(first + 2u);
+    let face = cross(umbrage_between(a, b), umbrage_between(a, c));
+    let q = array(umbrage_from_eye(a), umbrage_from_eye(b), umbrage_from_eye(c));
     let size = max(max(length(q[0]), length(q[1])), length(q[2]));
     var out: Varying;
     if umbrage_eye_in_plane(face, q[0], size) {
         out.clip = UMBRAGE_NOWHERE;
         return out;
     }
-    out.clip = umbrage_clip(view, p - view.eye, 1.0);
+    out.clip = umbrage_clip(umbrage_world_view, umbrage_from_eye(umbrage_corner(corner)), 1.0);
     out.distance = out.clip.w;
     out.material = triangle_material[triangle];
     out.normal = face;

@@ -1,16 +1,13 @@
 // A light's casters into one face of its map. Vertices are pulled from the world's own buffers.
 
-@group(0) @binding(0) var<storage, read> positions: array<f32>;
-@group(0) @binding(1) var<storage, read> triangles: array<u32>;
-@group(1) @binding(0) var<uniform> map: ShadowMap;
+@group(0) @binding(0) var<uniform> map: ShadowMap;
 // Triangles that cast, face after face.
-@group(1) @binding(1) var<storage, read> casters: array<u32>;
+@group(0) @binding(1) var<storage, read> casters: array<u32>;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) face: u32)
     -> @builtin(position) vec4f
 {
-    let i = 3u * triangles[3u * casters[index / 3u] + index % 3u];
-    let p = vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
+    let p = umbrage_position(umbrage_corner(3u * casters[index / 3u] + index % 3u));
     return shadow_clip(map.faces[face], p - map.faces[face].origin);
 }

@@ -27,13 +27,13 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::Vec3;
-use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
 use umbrage_core::world::{Reach, World};
 use wgpu::util::DeviceExt as _;
 
-use super::binding::{STORAGE, bind, buffer, layout};
 use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};
+use crate::binding::{STORAGE, bind, buffer, layout};
 use crate::gbuffer::DEPTH_STENCIL;
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
@@ -95,9 +95,7 @@ impl Extrude {
         let device = &gpu.device;
         let uniform = buffer(wgpu::BufferBindingType::Uniform);
         let storage = buffer(STORAGE);
-        let types = [
-            uniform, uniform, storage, storage, storage, storage, storage,
-        ];
+        let types = [uniform, storage, storage, storage];
         let layout = layout(gpu, "extrude", wgpu::ShaderStages::VERTEX, types);
         let constants = [(
             "normals",
@@ -107,7 +105,11 @@ impl Extrude {
                 Normals::VertexWeights => 2.0,
             },
         )];
-        let source = format!("{CLIP_WGSL}\n{}", include_str!("../shaders/extrude.wgsl"));
+        let source = format!(
+            "{CLIP_WGSL}\n{}\n{}",
+            world_wgsl(1),
+            include_str!("../shaders/extrude.wgsl")
+        );
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("extrude"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(source)),
@@ -118,7 +120,10 @@ impl Extrude {
                 layout: Some(
                     &device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                         label: Some(label),
-                        bind_group_layouts: &[Some(&layout)],
+                        bind_group_layouts: &[
+                            Some(&layout),
+                            Some(shadows.world_bind_group_layout()),
+                        ],
                         immediate_size: 0,
                     }),
                 ),
@@ -197,10 +202,6 @@ impl Technique for Extrude {
         if self.buffers.as_ref().is_none_or(|b| b.built != built) {
             self.buffers = Some(Buffers::new(given.gpu, given.stage, built, self.normals)?);
         }
-        let (positions, triangles) = given
-            .shadows
-            .world_buffers()
-            .ok_or(umbrage::RenderError::NoWorld)?;
         let Some(Buffers { skin: at_rest, .. }) = &self.buffers else {
             return Ok(());
         };
@@ -222,10 +223,7 @@ impl Technique for Extrude {
             contents: bytemuck::bytes_of(&[skin::first_corner(world); 4]),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let view = given.shadows.view_buffer();
-        let buffers = [
-            view, &first, positions, triangles, &lights, at_rest, &joints,
-        ];
+        let buffers = [&first, &lights, at_rest, &joints];
         let resources = buffers.map(wgpu::Buffer::as_entire_binding);
         self.bind_group = Some(bind(given.gpu, "extrude", &self.layout, resources));
         Ok(())
@@ -256,6 +254,7 @@ impl Technique for Extrude {
                 let world = &given.stage.world;
                 let reach = Reach::new(&given.lights[number].light);
                 pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
+                pass.set_bind_group(1, given.shadows.world_bind_group(), &[]);
                 for (pipeline, corners) in [
                     (
                         &self.caps,
@@ -272,6 +271,7 @@ impl Technique for Extrude {
                 self.light.draw(pass, given.shadows, number, None);
                 pass.set_pipeline(&self.clean);
                 pass.set_bind_group(0, self.bind_group.as_ref(), &[]);
+                pass.set_bind_group(1, given.shadows.world_bind_group(), &[]);
                 pass.draw(0..3, 0..1);
             });
         Ok(())

@@ -10,8 +10,8 @@ use umbrage::{Light, ShadowRenderer, View};
 use umbrage_truth::{NearClip, Oracle, Verdicts};
 use wgpu::{BindGroupLayout, ShaderStages, TextureUsages};
 
-use super::binding::{bind, layout, texture};
 use super::{Given, Technique, TechniqueReport};
+use crate::binding::{bind, layout, texture};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
 use crate::run::{FROM_DARK, light_pass};

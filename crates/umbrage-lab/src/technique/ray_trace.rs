@@ -22,8 +22,8 @@ use wgpu::{BindGroupLayout, BufferUsages, ShaderStages, TextureFormat, TextureUs
 
 use self::primary::Primary;
 use self::tree::Tree;
-use super::binding::{STORAGE, bind, buffer, layout, texture};
 use super::{Given, Technique, TechniqueReport};
+use crate::binding::{STORAGE, bind, buffer, layout, texture};
 use crate::gbuffer::whole;
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
@@ -105,7 +105,7 @@ impl RayTrace {
         let layout = layout(gpu, "rays", ShaderStages::COMPUTE, types);
         Self {
             lit: LightPass::new(gpu, shadows, draw, lit_by),
-            primary: Primary::new(gpu),
+            primary: Primary::new(gpu, shadows),
             pipeline: pipeline(gpu, &layers, &[&layout, shadows.light_bind_group_layout()]),
             layout,
             bits_layout,
@@ -185,7 +185,7 @@ impl Technique for RayTrace {
         target: &wgpu::Texture,
     ) -> Result<(), GpuError> {
         if let (0, Some(frame)) = (lights.start, &self.frame) {
-            self.primary.record(given, encoder, &frame.ids)?;
+            self.primary.record(given, encoder, &frame.ids);
         }
         drop(light_pass(encoder, given.targets, target, FROM_DARK));
         let mut first = lights.start;

@@ -26,9 +26,9 @@ use self::casters::{Casters, casters};
 use self::draw::{Bias, CasterPass, Drawing, write_faces};
 use self::face::{Face, face_count, faces};
 use self::pool::{BUDGET, Map, Pool, bytes};
-use super::binding::{bind, buffer, layout};
 use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};
+use crate::binding::{bind, buffer, layout};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
 use crate::run::{FROM_DARK, light_pass};
@@ -105,7 +105,7 @@ impl ShadowMap {
         Ok(Self {
             texels,
             lit: LightPass::new(gpu, shadows, draw, lit_by),
-            casters: CasterPass::new(gpu, bias),
+            casters: CasterPass::new(gpu, shadows, bias),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("shadow map"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -242,7 +242,6 @@ impl ShadowMap {
 impl Technique for ShadowMap {
     fn prepare(&mut self, given: &Given<'_>) -> Result<(), GpuError> {
         self.lit.prepare(given);
-        self.casters.prepare(given)?;
         self.unseen.update(given)?;
         self.forget_changes(given);
         self.find_casters(given)?;
@@ -268,8 +267,9 @@ impl Technique for ShadowMap {
             let kept = &self.lights[number];
             if let (Some(map), Some(drawing)) = (&kept.map, &kept.drawing) {
                 let stale = kept.wanted & !kept.drawn;
+                let casters = (drawing, &kept.casters);
                 self.casters
-                    .record(encoder, (drawing, &kept.casters), map, stale);
+                    .record(encoder, given.shadows, casters, map, stale);
             }
             let kept = &mut self.lights[number];
             kept.drawn |= kept.wanted;
@@ -289,8 +289,9 @@ impl Technique for ShadowMap {
             for (&number, map) in some.iter().zip(&self.pool.scratch) {
                 let kept = &self.lights[number];
                 readings.push((kept.drawing.as_ref()).map(|drawing| {
+                    let casters = (drawing, &kept.casters);
                     self.casters
-                        .record(encoder, (drawing, &kept.casters), map, kept.wanted);
+                        .record(encoder, given.shadows, casters, map, kept.wanted);
                     read_map(given.gpu, &self.map_layout, &self.sampler, drawing, map)
                 }));
             }

@@ -6,16 +6,13 @@
 // taken to be infinite: a finite one is a part of that, and what misses the hull still does. On the
 // z-fail path, which counts behind the surface, all are kept.
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<storage, read> positions: array<f32>;
-@group(0) @binding(2) var<storage, read> edges: array<vec2u>;
-@group(0) @binding(3) var<storage, read> quads: array<u32>;
-@group(0) @binding(4) var<storage, read> plan: array<LightPlan>;
-@group(0) @binding(5) var<storage, read_write> tiles: array<Box>;
-@group(0) @binding(6) var<storage, read_write> kept_quads: array<u32>;
-@group(0) @binding(7) var<storage, read_write> calls: array<LightCalls>;
-@group(0) @binding(8) var depth_texture: texture_depth_2d;
-@group(0) @binding(9) var<storage, read_write> spans: array<u32>;
+@group(0) @binding(0) var<storage, read> quads: array<u32>;
+@group(0) @binding(1) var<storage, read> plan: array<LightPlan>;
+@group(0) @binding(2) var<storage, read_write> tiles: array<Box>;
+@group(0) @binding(3) var<storage, read_write> kept_quads: array<u32>;
+@group(0) @binding(4) var<storage, read_write> calls: array<LightCalls>;
+@group(0) @binding(5) var depth_texture: texture_depth_2d;
+@group(0) @binding(6) var<storage, read_write> spans: array<u32>;
 
 struct LightPlan {
     homogeneous: vec4f,
@@ -80,6 +77,7 @@ fn with_point(a: Box, p: vec3f, margin: vec3f) -> Box {
 
 @compute @workgroup_size(8, 8)
 fn surface(@builtin(global_invocation_id) id: vec3u) {
+    let view = umbrage_world_view;
     let size = textureDimensions(depth_texture);
     let across = (size + TILE - 1u) / TILE;
     if all(id.xy == vec2u(0u)) {
@@ -176,7 +174,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 // of these rows the span of tiles that has any.
 fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box {
     let across = (textureDimensions(depth_texture) + TILE - 1u) / TILE;
-    let center = homogeneous.xyz - view.eye;
+    let center = umbrage_light_from_eye(homogeneous);
     // Far above the rounding of the distance, and below what a tile's box adds to it.
     let range = ours.range * 1.00390625;
     let asked = (ours.path & 4u) == 0u;
@@ -234,21 +232,14 @@ fn over_hull(normal: vec3f, foot: vec3f, box: Box) -> vec2f {
     return vec2f(max(at_eye, at_middle + spread) + error, min(at_eye, at_middle - spread) - error);
 }
 
-fn position(vertex: u32) -> vec3f {
-    let i = 3u * vertex;
-    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
-}
-
 // False only if a plane separates the quad from the hull of the eye and the box. Tried are the
 // planes of the box, the quad's own plane, and the three planes upright on it through its edges.
 fn meets_hull(quad: u32, light: vec4f, box: Box) -> bool {
-    let ends = edges[quad >> 1u];
-    let pa = position(ends.x);
-    let pb = position(ends.y);
-    let a = pa - view.eye;
-    let b = pb - view.eye;
-    let away_a = pa * light.w - light.xyz;
-    let away_b = pb * light.w - light.xyz;
+    let ends = umbrage_edge(quad >> 1u);
+    let a = umbrage_from_eye(ends.x);
+    let b = umbrage_from_eye(ends.y);
+    let away_a = umbrage_from_light(ends.x, light);
+    let away_b = umbrage_from_light(ends.y, light);
     if dot(away_a, away_a) == 0.0 || dot(away_b, away_b) == 0.0 {
         return true;
     }
@@ -263,7 +254,7 @@ fn meets_hull(quad: u32, light: vec4f, box: Box) -> bool {
     }
 
     // From positions as they are: relative to the eye both ends are rounded already.
-    let along = normalize(pb - pa);
+    let along = normalize(umbrage_between(ends.x, ends.y));
     let ray_a = normalize(away_a);
     let ray_b = normalize(away_b);
     let normal = cross(along, ray_a);

@@ -1,23 +1,14 @@
 // Volume geometry by vertex pulling: sides from one u32 a quad, caps from one u32 a triangle.
 // The instance index is the light's number.
 
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(1) var<storage, read> positions: array<f32>;
-@group(0) @binding(2) var<storage, read> edges: array<vec2u>;
-@group(0) @binding(3) var<storage, read> triangles: array<u32>;
-@group(0) @binding(4) var<storage, read> quads: array<u32>;
-@group(0) @binding(5) var<storage, read> caps: array<u32>;
-@group(0) @binding(6) var<storage, read> lights: array<vec4f>;
+@group(0) @binding(0) var<storage, read> quads: array<u32>;
+@group(0) @binding(1) var<storage, read> caps: array<u32>;
+@group(0) @binding(2) var<storage, read> lights: array<vec4f>;
 // To which vertices are moved, measured from the light; 0 is infinity. Filled if UMBRAGE_FINITE.
-@group(0) @binding(7) var<storage, read> distances: array<f32>;
+@group(0) @binding(3) var<storage, read> distances: array<f32>;
 
 // Whether any light's volume may be finite: decided when the pipeline is made.
 override UMBRAGE_FINITE: bool = false;
-
-fn position(vertex: u32) -> vec3f {
-    let i = 3u * vertex;
-    return vec3f(positions[i], positions[i + 1u], positions[i + 2u]);
-}
 
 // Sides recede from the eye by 2^-21 of the distance: what is counted at a surface are the sides
 // before the point that much nearer. Under a grazing light the sides of a triangle run below its
@@ -28,30 +19,30 @@ const RECEDE: f32 = 1.0 - 1.0 / 2097152.0;
 
 // The vertex relative to the eye, or moved away from the light to its distance; one that is
 // farther away stays.
-fn moved(p: vec3f, light: vec4f, distance: f32) -> vec3f {
-    let away = p - light.xyz;
+fn moved(vertex: u32, light: vec4f, distance: f32) -> vec3f {
+    let away = umbrage_from_light(vertex, light);
     // Scaled, so that no square overflows or vanishes.
     let scale = max(max(abs(away.x), abs(away.y)), abs(away.z));
     let direction = away / scale;
     let size = length(direction);
-    let far = light.xyz - view.eye + direction * (distance / size);
-    return select(far, p - view.eye, scale * size >= distance);
+    let far = umbrage_light_from_eye(light) + direction * (distance / size);
+    return select(far, umbrage_from_eye(vertex), scale * size >= distance);
 }
 
 // The vertex itself, or its image away from the light: at the light's distance, or at infinity.
 fn volume_vertex(vertex: u32, extruded: bool, light: u32, recede: f32) -> vec4f {
-    let p = position(vertex);
+    let view = umbrage_world_view;
     if extruded {
         let at = lights[light];
         if UMBRAGE_FINITE {
             let distance = distances[light];
             if distance > 0.0 {
-                return umbrage_clip(view, moved(p, at, distance), recede);
+                return umbrage_clip(view, moved(vertex, at, distance), recede);
             }
         }
-        return umbrage_clip(view, p * at.w - at.xyz, 0.0);
+        return umbrage_clip(view, umbrage_from_light(vertex, at), 0.0);
     }
-    return umbrage_clip(view, p - view.eye, recede);
+    return umbrage_clip(view, umbrage_from_eye(vertex), recede);
 }
 
 // A quad's edge as its triangle runs along it.
@@ -63,7 +54,7 @@ struct Side {
 
 fn side_of(quad: u32) -> Side {
     let word = quads[quad];
-    let ends = edges[word >> 1u];
+    let ends = umbrage_edge(word >> 1u);
     let against = (word & 1u) == 1u;
     return Side(select(ends, ends.yx, against), against);
 }
@@ -93,19 +84,19 @@ fn zfail_side(@builtin(vertex_index) index: u32, @builtin(instance_index) light:
     -> @builtin(position) @invariant vec4f
 {
     let side = side_of(index / 6u);
-    if eye_on_side(position(side.ends.x), position(side.ends.y), lights[light]) {
+    if eye_on_side(side.ends, lights[light]) {
         return UMBRAGE_NOWHERE;
     }
     return side_corner(side, index, light);
 }
 
-// Whether the eye is on the side that the edge a-b casts, not just in its plane.
-fn eye_on_side(a: vec3f, b: vec3f, light: vec4f) -> bool {
-    let qa = a - view.eye;
-    let qb = b - view.eye;
-    let edge = b - a;
-    let away_a = a * light.w - light.xyz;
-    let away_b = b * light.w - light.xyz;
+// Whether the eye is on the side that the edge casts, not just in its plane.
+fn eye_on_side(ends: vec2u, light: vec4f) -> bool {
+    let qa = umbrage_from_eye(ends.x);
+    let qb = umbrage_from_eye(ends.y);
+    let edge = umbrage_between(ends.x, ends.y);
+    let away_a = umbrage_from_light(ends.x, light);
+    let away_b = umbrage_from_light(ends.y, light);
     let normal = cross(edge, away_a);
     let size = max(length(qa), length(qb));
     // Between the two extruded sides, and beyond the edge. A wide margin: what else lies in the
@@ -122,13 +113,12 @@ fn eye_on_side(a: vec3f, b: vec3f, light: vec4f) -> bool {
 
 // A corner of a cap that ends somewhere, relative to the eye.
 fn cap_corner(vertex: u32, extruded: bool, light: u32) -> vec3f {
-    let p = position(vertex);
     if UMBRAGE_FINITE {
         if extruded {
-            return moved(p, lights[light], distances[light]);
+            return moved(vertex, lights[light], distances[light]);
         }
     }
-    return p - view.eye;
+    return umbrage_from_eye(vertex);
 }
 
 // The light cap with the triangle's own vertex order, then the dark cap with the other winding. A
@@ -145,15 +135,15 @@ fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     let first = 3u * (caps[index / 6u] >> 1u);
     let is_infinite = extruded && !(UMBRAGE_FINITE && distances[light] > 0.0);
     if !is_infinite {
-        let a = cap_corner(triangles[first], extruded, light);
-        let b = cap_corner(triangles[first + 1u], extruded, light);
-        let c = cap_corner(triangles[first + 2u], extruded, light);
+        let a = cap_corner(umbrage_corner(first), extruded, light);
+        let b = cap_corner(umbrage_corner(first + 1u), extruded, light);
+        let c = cap_corner(umbrage_corner(first + 2u), extruded, light);
         let size = max(max(length(a), length(b)), length(c));
         if umbrage_eye_in_plane(cross(b - a, c - a), a, size) {
             return UMBRAGE_NOWHERE;
         }
     }
-    return volume_vertex(triangles[first + k], extruded, light, 1.0);
+    return volume_vertex(umbrage_corner(first + k), extruded, light, 1.0);
 }
 
 // All of the scissor, to leave it clean for the next light.

@@ -25,10 +25,10 @@ pub(crate) struct LowFrame {
     pub(crate) uploaded: Uploaded,
     surface: LowDepth,
     depth: Option<wgpu::Texture>,
-    /// View and world, for `surface`, until this frame's is drawn.
-    pending: Option<wgpu::BindGroup>,
-    /// Bytes of edges and quads, these before and after the cull.
-    unseen_bytes: u64,
+    /// This frame's depth is not drawn yet.
+    is_pending: bool,
+    /// Bytes of quads, before and after the cull.
+    quad_bytes: u64,
 }
 
 impl LowFrame {
@@ -46,15 +46,16 @@ impl LowFrame {
             extrusion: Extrusion::Infinite,
             volume_color: VolumeColor::None,
         };
+        let shadows = ShadowRenderer::new(&gpu.device, &options)?;
         Ok(Self {
             divisor,
-            shadows: ShadowRenderer::new(&gpu.device, &options)?,
             plan: FramePlan::default(),
             uploaded: Uploaded::default(),
-            surface: LowDepth::new(gpu),
+            surface: LowDepth::new(gpu, &shadows),
+            shadows,
             depth: None,
-            pending: None,
-            unseen_bytes: 0,
+            is_pending: false,
+            quad_bytes: 0,
         })
     }
 
@@ -83,20 +84,20 @@ impl LowFrame {
             ..given.frame
         };
         self.uploaded = self.shadows.prepare(device, queue, &frame)?;
-        self.pending = Some(self.surface.bind(given.gpu, &self.shadows)?);
-        let edges = size_of_val(&given.stage.world.edges.vertices[..]);
-        let quads = size_of_val(&given.frame.volumes.quads[..]);
-        self.unseen_bytes = (edges + 2 * quads) as u64;
+        self.is_pending = true;
+        self.quad_bytes = 2 * size_of_val(&given.frame.volumes.quads[..]) as u64;
         Ok(())
     }
 
     /// Draws depth and finds the receivers, if this frame's were not yet.
     pub(crate) fn record_surface(&mut self, given: &Given<'_>, encoder: &mut wgpu::CommandEncoder) {
-        let (Some(world), Some(depth)) = (self.pending.take(), &self.depth) else {
+        let Some(depth) = self.depth.as_ref().filter(|_| self.is_pending) else {
             return;
         };
+        self.is_pending = false;
         let triangles = given.stage.world.triangles.len() as u32;
-        self.surface.record(encoder, &world, triangles, depth);
+        self.surface
+            .record(encoder, &self.shadows, triangles, depth);
         self.shadows
             .find_receivers(&given.gpu.device, encoder, &depth_only(depth), None);
     }
@@ -110,11 +111,7 @@ impl LowFrame {
         // With stencil.
         const DEPTH: u64 = 8;
         let size = self.depth.as_ref().map(|d| [d.width(), d.height()]);
-        let world = self.shadows.world_buffers();
-        let world = world.map_or(0, |(positions, triangles)| {
-            positions.size() + triangles.size()
-        });
-        DEPTH * size.map_or(0, area) + world + self.unseen_bytes
+        DEPTH * size.map_or(0, area) + self.shadows.world_bytes() + self.quad_bytes
     }
 }
 

@@ -4,24 +4,24 @@
 //! Vertices are those of `primary.wgsl`, by the rules of the surface's own: the same clip positions,
 //! the same triangles left out.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer};
-use wgpu::{BindGroup, Texture};
+use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
+use wgpu::Texture;
 
 use crate::gbuffer::{DEPTH_STENCIL, whole};
-use crate::gpu::{Gpu, GpuError};
-use crate::technique::binding::{STORAGE, bind, buffer, layout};
+use crate::gpu::Gpu;
 
 /// Draws depth and nothing else.
 #[derive(Debug)]
 pub(super) struct LowDepth {
     pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
 }
 
 impl LowDepth {
-    pub(super) fn new(gpu: &Gpu) -> Self {
+    /// For worlds as `shadows` has them.
+    pub(super) fn new(gpu: &Gpu, shadows: &ShadowRenderer) -> Self {
         let source = format!(
-            "{CLIP_WGSL}\n{}",
+            "{CLIP_WGSL}\n{}\n{}",
+            world_wgsl(0),
             include_str!("../../shaders/primary.wgsl")
         );
         let device = &gpu.device;
@@ -29,15 +29,9 @@ impl LowDepth {
             label: Some("low depth"),
             source: wgpu::ShaderSource::Wgsl(source.into()),
         });
-        let types = [
-            buffer(wgpu::BufferBindingType::Uniform),
-            buffer(STORAGE),
-            buffer(STORAGE),
-        ];
-        let layout = layout(gpu, "low depth", wgpu::ShaderStages::VERTEX, types);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("low depth"),
-            bind_group_layouts: &[Some(&layout)],
+            bind_group_layouts: &[Some(shadows.world_bind_group_layout())],
             immediate_size: 0,
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -65,23 +59,14 @@ impl LowDepth {
             multiview_mask: None,
             cache: None,
         });
-        Self { pipeline, layout }
-    }
-
-    /// Binds view and world of `shadows`.
-    pub(super) fn bind(&self, gpu: &Gpu, shadows: &ShadowRenderer) -> Result<BindGroup, GpuError> {
-        let buffers = shadows.world_buffers();
-        let (positions, triangles) = buffers.ok_or(umbrage::RenderError::NoWorld)?;
-        let buffers = [shadows.view_buffer(), positions, triangles];
-        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-        Ok(bind(gpu, "low depth", &self.layout, resources))
+        Self { pipeline }
     }
 
     /// Clears depth and stencil, and draws so many triangles.
     pub(super) fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        world: &BindGroup,
+        shadows: &ShadowRenderer,
         triangles: u32,
         depth: &Texture,
     ) {
@@ -101,7 +86,7 @@ impl LowDepth {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, world, &[]);
+        pass.set_bind_group(0, shadows.world_bind_group(), &[]);
         pass.draw(0..3 * triangles, 0..1);
     }
 }

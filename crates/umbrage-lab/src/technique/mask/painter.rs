@@ -9,9 +9,9 @@ use wgpu::{BlendComponent, BlendFactor, BlendOperation, RenderPipeline, TextureF
 
 use super::plan::{MaskPlan, Place, Rectangle, Step};
 use super::slots::SLOT_WGSL;
+use crate::binding::{STORAGE, bind, buffer, layout};
 use crate::gpu::Gpu;
 use crate::method::{Counting, MaskBuffer};
-use crate::technique::binding::{STORAGE, bind, buffer, layout};
 
 /// Pipelines for the steps of one plan.
 #[derive(Debug)]

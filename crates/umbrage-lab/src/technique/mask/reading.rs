@@ -1,8 +1,8 @@
 //! How a light's shader reads its mask: the texel of its pixel, or filtered from a smaller layer.
 
 use super::slots::SLOT_WGSL;
+use crate::binding::{STORAGE, bind, buffer, layout, texture};
 use crate::gpu::Gpu;
-use crate::technique::binding::{STORAGE, bind, buffer, layout, texture};
 
 /// How lights read their masks.
 #[derive(Debug)]

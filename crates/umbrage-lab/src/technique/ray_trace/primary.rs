@@ -1,13 +1,12 @@
 //! The number of the triangle seen at each pixel: rays start from its plane, which no rounded
 //! distance can leave, and never meet the triangle itself.
 
-use umbrage::CLIP_WGSL;
+use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
 use wgpu::{TextureFormat, TextureUsages};
 
 use crate::gbuffer::{DEPTH_STENCIL, texture, whole};
-use crate::gpu::{Gpu, GpuError};
+use crate::gpu::Gpu;
 use crate::technique::Given;
-use crate::technique::binding::bind;
 
 const ID: TextureFormat = TextureFormat::R32Uint;
 
@@ -18,9 +17,10 @@ pub(super) struct Primary {
 }
 
 impl Primary {
-    pub(super) fn new(gpu: &Gpu) -> Self {
+    pub(super) fn new(gpu: &Gpu, shadows: &ShadowRenderer) -> Self {
         let source = format!(
-            "{CLIP_WGSL}\n{}",
+            "{CLIP_WGSL}\n{}\n{}",
+            world_wgsl(0),
             include_str!("../../shaders/primary.wgsl")
         );
         let device = &gpu.device;
@@ -32,7 +32,13 @@ impl Primary {
         Self {
             pipeline: device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("primary triangles"),
-                layout: None,
+                layout: Some(
+                    &device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                        label: Some("primary triangles"),
+                        bind_group_layouts: &[Some(shadows.world_bind_group_layout())],
+                        immediate_size: 0,
+                    }),
+                ),
                 vertex: wgpu::VertexState {
                     module: &module,
                     entry_point: Some("vertex"),
@@ -75,13 +81,7 @@ impl Primary {
         given: &Given<'_>,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::Texture,
-    ) -> Result<(), GpuError> {
-        let buffers = given.shadows.world_buffers();
-        let (positions, triangles) = buffers.ok_or(umbrage::RenderError::NoWorld)?;
-        let buffers = [given.shadows.view_buffer(), positions, triangles];
-        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-        let layout = self.pipeline.get_bind_group_layout(0);
-        let bind_group = bind(given.gpu, "primary triangles", &layout, resources);
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("primary triangles"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -101,8 +101,7 @@ impl Primary {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &bind_group, &[]);
+        pass.set_bind_group(0, given.shadows.world_bind_group(), &[]);
         pass.draw(0..3 * given.stage.world.triangles.len() as u32, 0..1);
-        Ok(())
     }
 }

@@ -1,13 +1,13 @@
 //! A light's casters into the faces of its map.
 
+use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
 use wgpu::util::DeviceExt as _;
 
 use super::casters::Casters;
 use super::face::Face;
 use super::pool::{DEPTH, Map};
+use crate::binding::{STORAGE, bind, buffer, layout};
 use crate::gpu::{Gpu, GpuError};
-use crate::technique::Given;
-use crate::technique::binding::{STORAGE, bind, buffer, layout};
 
 /// How far a caster stands back from its own surface, and the surface comes forward.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +30,7 @@ impl Bias {
 #[derive(Debug)]
 pub(super) struct CasterPass {
     pipeline: wgpu::RenderPipeline,
-    world_layout: wgpu::BindGroupLayout,
     map_layout: wgpu::BindGroupLayout,
-    world: Option<wgpu::BindGroup>,
 }
 
 /// What a light's casters are drawn with.
@@ -43,28 +41,16 @@ pub(super) struct Drawing {
 }
 
 impl CasterPass {
-    pub(super) fn new(gpu: &Gpu, bias: Bias) -> Self {
+    pub(super) fn new(gpu: &Gpu, shadows: &ShadowRenderer, bias: Bias) -> Self {
         let uniform = wgpu::BufferBindingType::Uniform;
-        let world_layout = buffers_layout(gpu, "shadow map world", [STORAGE, STORAGE]);
-        let map_layout = buffers_layout(gpu, "shadow map casters", [uniform, STORAGE]);
+        let types = [uniform, STORAGE].map(buffer);
+        let stage = wgpu::ShaderStages::VERTEX;
+        let map_layout = layout(gpu, "shadow map casters", stage, types);
+        let world_layout = shadows.world_bind_group_layout();
         Self {
-            pipeline: pipeline(gpu, &[&world_layout, &map_layout], bias),
-            world_layout,
+            pipeline: pipeline(gpu, [&map_layout, world_layout], bias),
             map_layout,
-            world: None,
         }
-    }
-
-    /// Binds the world of the frame at hand.
-    pub(super) fn prepare(&mut self, given: &Given<'_>) -> Result<(), GpuError> {
-        let buffers = given.shadows.world_buffers();
-        let (positions, triangles) = buffers.ok_or(umbrage::RenderError::NoWorld)?;
-        self.world = Some(bind_buffers(
-            given.gpu,
-            &self.world_layout,
-            [positions, triangles],
-        ));
-        Ok(())
     }
 
     /// Uploads what a light's map is drawn with.
@@ -94,7 +80,12 @@ impl CasterPass {
                 usage: wgpu::BufferUsages::STORAGE,
             });
         Ok(Drawing {
-            binding: bind_buffers(gpu, &self.map_layout, [&faces, &list]),
+            binding: bind(
+                gpu,
+                "shadow map casters",
+                &self.map_layout,
+                [faces.as_entire_binding(), list.as_entire_binding()],
+            ),
             faces,
         })
     }
@@ -103,6 +94,7 @@ impl CasterPass {
     pub(super) fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
+        shadows: &ShadowRenderer,
         (drawing, casters): (&Drawing, &Casters),
         map: &Map,
         wanted: u8,
@@ -125,8 +117,8 @@ impl CasterPass {
                 continue;
             }
             pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, self.world.as_ref(), &[]);
-            pass.set_bind_group(1, &drawing.binding, &[]);
+            pass.set_bind_group(0, &drawing.binding, &[]);
+            pass.set_bind_group(1, shadows.world_bind_group(), &[]);
             pass.draw(3 * casters.start..3 * casters.end, face..face + 1);
         }
     }
@@ -144,29 +136,15 @@ pub(super) fn write_faces(gpu: &Gpu, buffer: &wgpu::Buffer, faces: &[Face]) {
     gpu.queue.write_buffer(buffer, 0, &map);
 }
 
-fn bind_buffers(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    buffers: [&wgpu::Buffer; 2],
-) -> wgpu::BindGroup {
-    let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-    bind(gpu, "shadow map casters", layout, resources)
-}
-
-fn buffers_layout(
-    gpu: &Gpu,
-    label: &str,
-    types: [wgpu::BufferBindingType; 2],
-) -> wgpu::BindGroupLayout {
-    layout(gpu, label, wgpu::ShaderStages::VERTEX, types.map(buffer))
-}
-
 /// Casters, both sides: which of them cast was decided before.
-fn pipeline(gpu: &Gpu, layouts: &[&wgpu::BindGroupLayout; 2], bias: Bias) -> wgpu::RenderPipeline {
-    let source = concat!(
+fn pipeline(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 2], bias: Bias) -> wgpu::RenderPipeline {
+    let source = [
+        CLIP_WGSL,
+        &world_wgsl(1),
         include_str!("../../shaders/shadow_face.wgsl"),
-        include_str!("../../shaders/shadow_caster.wgsl")
-    );
+        include_str!("../../shaders/shadow_caster.wgsl"),
+    ]
+    .concat();
     let device = &gpu.device;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("shadow map"),

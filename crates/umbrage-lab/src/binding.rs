@@ -7,7 +7,7 @@ use wgpu::{
 use crate::gpu::Gpu;
 
 /// Of these types.
-pub(super) fn layout<const N: usize>(
+pub(crate) fn layout<const N: usize>(
     gpu: &Gpu,
     label: &str,
     visibility: ShaderStages,
@@ -30,7 +30,7 @@ pub(super) fn layout<const N: usize>(
 }
 
 /// Of these resources.
-pub(super) fn bind<const N: usize>(
+pub(crate) fn bind<const N: usize>(
     gpu: &Gpu,
     label: &str,
     layout: &BindGroupLayout,
@@ -48,7 +48,7 @@ pub(super) fn bind<const N: usize>(
 }
 
 /// A whole buffer.
-pub(super) fn buffer(ty: BufferBindingType) -> BindingType {
+pub(crate) fn buffer(ty: BufferBindingType) -> BindingType {
     BindingType::Buffer {
         ty,
         has_dynamic_offset: false,
@@ -57,10 +57,10 @@ pub(super) fn buffer(ty: BufferBindingType) -> BindingType {
 }
 
 /// Read only.
-pub(super) const STORAGE: BufferBindingType = BufferBindingType::Storage { read_only: true };
+pub(crate) const STORAGE: BufferBindingType = BufferBindingType::Storage { read_only: true };
 
 /// All of a texture, not filtered.
-pub(super) fn texture(
+pub(crate) fn texture(
     sample_type: wgpu::TextureSampleType,
     view_dimension: wgpu::TextureViewDimension,
 ) -> BindingType {
