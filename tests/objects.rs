@@ -30,7 +30,7 @@ fn a_kept_frame_equals_a_fresh_one_and_the_oracles() {
         Casters::Material,
     );
     let view = site.first_camera(SIZE);
-    let at = site.lights[1].light.position;
+    let at = site.lights[1].light.position.as_vec3();
     let (low, high) = (at - Vec3::new(9.0, 6.0, 9.0), at + Vec3::new(9.0, 1.0, 9.0));
     let mut random = Random(6);
     let mut objects: Vec<ObjectId> = Vec::new();
@@ -55,7 +55,7 @@ fn a_kept_frame_equals_a_fresh_one_and_the_oracles() {
             }
         }
         if step % 4 == 3 {
-            site.lights[5].light.position += Vec3::new(0.3, 0.1, -0.2);
+            site.lights[5].light.position += DVec3::new(0.3, 0.1, -0.2);
         }
 
         lab.prepare(&site.stage, &site.lights, &view, Method::Counter);
@@ -102,7 +102,7 @@ fn a_mask_of_before_the_move_is_wrong_after_it() {
         Casters::Material,
     );
     let view = site.first_camera(SIZE);
-    let ahead = view.eye + 6.0 * view.forward;
+    let ahead = view.eye.as_vec3() + 6.0 * view.forward;
     let lights: Vec<Light> = site.lights.iter().map(|l| l.light).collect();
     let world = &mut site.stage.world;
     let id = world

@@ -5,7 +5,7 @@ mod common;
 
 use common::room::{self, crate_of};
 use common::{CASTERS, Site, by_profile, check, lab, plain, skipped};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use umbrage_core::View;
 use umbrage_core::world::Pose;
 use umbrage_lab::lab::{Lab, Method};
@@ -89,7 +89,7 @@ impl Street {
             Casters::Material,
         );
         let view = site.first_camera(SIZE);
-        let ahead = (view.eye + 6.0 * view.forward).as_dvec3();
+        let ahead = view.eye + 6.0 * view.forward.as_dvec3();
         let world = &mut site.stage.world;
         let id = world.insert(&crate_of(Vec3::ONE), &Pose::at(ahead));
         lab.prepare(&site.stage, &site.lights, &view, method);
@@ -104,9 +104,10 @@ impl Street {
     }
 
     fn pose(&mut self, aside: f32) {
-        let at = self.view.eye + 6.0 * self.view.forward + aside * self.view.right;
+        let aside = 6.0 * self.view.forward + aside * self.view.right;
+        let at = self.view.eye + aside.as_dvec3();
         let world = &mut self.site.stage.world;
-        let posed = world.pose(self.id, &Pose::at(at.as_dvec3()));
+        let posed = world.pose(self.id, &Pose::at(at));
         posed.expect("it is there");
     }
 
@@ -160,7 +161,7 @@ fn what_is_kept_follows_an_object_there_and_back() {
         assert_eq!(street.mask(&mut lab).words, first.words, "{name}, back");
 
         let light = &mut street.site.lights[5].light;
-        light.position += Vec3::new(0.3, 0.1, -0.2);
+        light.position += DVec3::new(0.3, 0.1, -0.2);
         let lit = street.mask(&mut lab);
         assert_eq!(lit.words, street.fresh(&mut lab).words, "{name}, light");
 

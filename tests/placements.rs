@@ -5,7 +5,7 @@
 mod common;
 
 use common::{EXACT, Found, Site, assert_exact, by_profile, check, plain, point, room, staged};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use umbrage_core::frame::{LightPath, ZFailReason};
 use umbrage_core::volume::{VolumeBuilder, Volumes};
 use umbrage_core::{Light, LightShape, View};
@@ -87,8 +87,8 @@ fn eye_exactly_on_a_side() {
     for [a, b] in some(&edges, by_profile(10, 5)) {
         let middle = (a + b) * 0.5;
         for k in [0.5, 2.0] {
-            let eye = middle + k * (middle - light.position);
-            for view in views_from(&site, eye, light.position) {
+            let eye = middle + k * (middle - light.position.as_vec3());
+            for view in views_from(&site, eye, light.position.as_vec3()) {
                 let found = assert_placed("on a side", &site, light, &view);
                 assert!(
                     is_on_side(&found),
@@ -108,8 +108,10 @@ fn eye_next_to_a_side() {
         let (mut on_side, mut off_side) = (0, 0);
         for [a, b] in some(&silhouette(&site, &light), by_profile(4, 2)) {
             let middle = (a + b) * 0.5;
-            let on = middle + 0.75 * (middle - light.position);
-            let normal = (b - a).cross(middle - light.position).normalize_or_zero();
+            let on = middle + 0.75 * (middle - light.position.as_vec3());
+            let normal = (b - a)
+                .cross(middle - light.position.as_vec3())
+                .normalize_or_zero();
             for share in [0.0, 1e-6, 1e-4, 1e-3] {
                 for sign in [-1.0, 1.0] {
                     let mut eye = on + sign * share * on.distance(middle) * normal;
@@ -122,7 +124,7 @@ fn eye_next_to_a_side() {
                             }
                         });
                     }
-                    let [view, _] = views_from(&site, eye, light.position);
+                    let [view, _] = views_from(&site, eye, light.position.as_vec3());
                     let found = assert_placed(&format!("{name}, {share} off"), &site, light, &view);
                     if share < 1e-5 {
                         assert!(is_on_side(&found), "{name}: {eye} is {share} off a side");
@@ -155,7 +157,7 @@ fn eye_deep_in_shadow() {
     ];
     let mut in_shadow = 0;
     for eye in eyes {
-        for view in views_from(&site, eye, light.position) {
+        for view in views_from(&site, eye, light.position.as_vec3()) {
             let found = assert_placed("deep in shadow", &site, light, &view);
             let count = found.plan.lights[0].path;
             in_shadow += usize::from(matches!(count, LightPath::ZPass { eye_count: 1.. }));
@@ -187,7 +189,7 @@ fn eye_on_a_caster() {
         (a + b + c) / 3.0,
         floor,
     ] {
-        for view in views_from(&site, eye, light.position) {
+        for view in views_from(&site, eye, light.position.as_vec3()) {
             assert_placed("on a caster", &site, light, &view);
         }
     }
@@ -213,9 +215,9 @@ fn eye_at_the_light() {
         let at = site.lights[0].light.position;
         let light = point(at, 30.0);
         for offset in [0.0, 1e-2, 0.25] {
-            let eye = at + Vec3::new(offset, -offset, 0.5 * offset);
+            let eye = at + DVec3::new(offset, -offset, 0.5 * offset);
             for target in [Vec3::X, Vec3::new(-0.4, -0.7, 0.3)] {
-                let view = site.look(eye, eye + target, SIZE);
+                let view = site.look(eye, eye + target.as_dvec3(), SIZE);
                 assert_placed(
                     &format!("{name}, eye {offset} from the light"),
                     &site,
@@ -274,7 +276,7 @@ fn lights_in_geometry() {
     let site = soup_site();
     let view = site.first_camera(SIZE);
     for t in 0..by_profile(16, 6) {
-        let [a, b, c] = site.stage.mesh.corners(t * 29);
+        let [a, b, c] = site.stage.mesh.corners(t * 29).map(DVec3::as_vec3);
         assert_placed(&format!("on corner of {t}"), &site, point(a, 9.0), &view);
         // As near to the plane as rounding allows: on either side of it, or in it.
         for position in [(a + b + c) / 3.0, a + 2.5 * (b - a) + (c - a)] {
@@ -367,7 +369,7 @@ fn vertical_views() {
     ] {
         let middle = site.lights[1].light.position;
         for (rise, ahead) in [(2.0, Vec3::NEG_Y), (-1.0, Vec3::Y)] {
-            let eye = middle + Vec3::new(0.75, rise, 0.5);
+            let eye = middle.as_vec3() + Vec3::new(0.75, rise, 0.5);
             for ahead in [
                 ahead,
                 ahead + Vec3::new(1e-3, 0.0, 0.0),
@@ -400,7 +402,7 @@ fn spots_and_suns() {
                 "spot",
                 &site,
                 Light {
-                    position,
+                    position: position.into(),
                     range: 15.0,
                     shape,
                 },
@@ -419,7 +421,7 @@ fn spots_and_suns() {
     for direction in directions {
         let shape = LightShape::Directional { direction };
         let light = Light {
-            position: Vec3::ZERO,
+            position: DVec3::ZERO,
             range: f32::INFINITY,
             shape,
         };

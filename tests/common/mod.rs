@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
-use glam::{DAffine3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use umbrage_core::frame::{FramePlan, LightPath};
 use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, LightShape, View};
@@ -99,7 +99,12 @@ impl Site {
         )
     }
 
-    pub(crate) fn look(&self, eye: Vec3, target: Vec3, size: [u32; 2]) -> View {
+    pub(crate) fn look(
+        &self,
+        eye: impl Into<DVec3>,
+        target: impl Into<DVec3>,
+        size: [u32; 2],
+    ) -> View {
         View::look_at(eye, target, 1.2, self.near(), size)
     }
 
@@ -116,7 +121,7 @@ impl Site {
         let mesh = &self.stage.mesh;
         let mut center = || {
             let t = (random.bits() % mesh.triangles.len() as u64) as usize;
-            let [a, b, c] = mesh.corners(t);
+            let [a, b, c] = mesh.corners(t).map(DVec3::as_vec3);
             let normal = (b - a).cross(c - a).normalize_or_zero();
             (
                 (a + b + c) / 3.0,
@@ -259,9 +264,9 @@ pub(crate) fn staged(lights: impl IntoIterator<Item = Light>) -> Vec<StageLight>
     lights.into_iter().enumerate().map(named).collect()
 }
 
-pub(crate) fn point(position: Vec3, range: f32) -> Light {
+pub(crate) fn point(position: impl Into<DVec3>, range: f32) -> Light {
     Light {
-        position,
+        position: position.into(),
         range,
         shape: LightShape::Point,
     }

@@ -123,6 +123,7 @@ pub(crate) fn crate_of(half: Vec3) -> umbrage_core::Mesh {
         positions: (0..8).map(corner).collect(),
         casting: vec![Casting::Front; triangles.len()],
         triangles,
+        ..umbrage_core::Mesh::default()
     }
 }
 
@@ -142,12 +143,12 @@ pub(crate) fn lights() -> Vec<StageLight> {
         point((BOX[0] + BOX[1]) * 0.5, 8.0),
         point(Vec3::new(2.0, 0.0625, -4.0), 10.0),
         Light {
-            position: Vec3::new(1.0, 4.5, 3.0),
+            position: Vec3::new(1.0, 4.5, 3.0).into(),
             range: 12.0,
             shape: spot,
         },
         Light {
-            position: Vec3::ZERO,
+            position: glam::DVec3::ZERO,
             range: f32::INFINITY,
             shape: sun,
         },

@@ -413,8 +413,9 @@ pub(crate) struct WorldArgs {
     /// double-sided ones. Blended ones are left out
     #[arg(long, value_enum, default_value_t = Casters::Material)]
     pub(crate) casters: Casters,
-    /// World position that all f32 positions are relative to; far from the scene it costs
-    /// precision [default: near the scene]
+    /// World position that all others are taken relative to, as an engine does whose world is large:
+    /// the scene then stands as far from zero as it stands from there. Where f32 is too coarse for
+    /// that, positions are kept as two f32 [default: near the scene]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) origin: Option<Point>,
     /// Which vertices of what never moves are one: those at the same place, or those within a

@@ -110,6 +110,25 @@ fn as_materials_say(stage: &Stage) -> Cow<'_, Mesh> {
     })
 }
 
+/// A mesh in f32, and the place that it is then relative to: what searches for places to stand works
+/// in f32, which would see a world far from zero in steps.
+fn in_f32(mesh: Cow<'_, Mesh>) -> (Cow<'_, Mesh>, DVec3) {
+    if mesh.residuals.is_empty() {
+        return (mesh, DVec3::ZERO);
+    }
+    let positions = mesh.positions.iter().map(|p| p.as_dvec3());
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = positions.fold(none, |(low, high), p| (low.min(p), high.max(p)));
+    let middle = ((low + high) * 0.5).round();
+    let mut near = mesh.into_owned();
+    let places: Vec<DVec3> = (0..near.positions.len() as u32)
+        .map(|v| near.places().at(v) - middle)
+        .collect();
+    near.stand(places);
+    near.residuals.clear();
+    (Cow::Owned(near), middle)
+}
+
 /// The lights that were chosen, on the stage.
 pub(crate) fn lights(
     stage: &Stage,
@@ -121,11 +140,12 @@ pub(crate) fn lights(
         RangeChoice::Metres(range) => Some(range),
     };
     let seeded = |count, seed| {
-        let placed = seeded_lights(&as_materials_say(stage), count, seed);
-        let placed = placed.into_iter().enumerate();
+        let (mesh, middle) = in_f32(as_materials_say(stage));
+        let origin = stage.soup.origin + middle;
+        let placed = seeded_lights(&mesh, count, seed).into_iter().enumerate();
         placed
             .map(|(number, (position, range))| {
-                seeded_light(number, position.as_dvec3() + stage.soup.origin, range)
+                seeded_light(number, position.as_dvec3() + origin, range)
             })
             .collect()
     };
@@ -168,10 +188,15 @@ pub(crate) fn view(
     let cameras = &stage.scene.cameras;
     let auto = || {
         let aspect = size[0] as f32 / size[1] as f32;
-        let shadow_lights: Vec<Light> = lights.iter().map(|light| light.light).collect();
-        let plain = as_materials_say(stage);
+        let (plain, middle) = in_f32(as_materials_say(stage));
+        let near = |light: &StageLight| Light {
+            position: light.light.position - middle,
+            ..light.light
+        };
+        let shadow_lights: Vec<Light> = lights.iter().map(near).collect();
         let found = auto_camera(&plain, &shadow_lights, default_fovy as f32, aspect);
-        let [eye, target] = [found.eye, found.target].map(|p| p.as_dvec3() + stage.soup.origin);
+        let origin = stage.soup.origin + middle;
+        let [eye, target] = [found.eye, found.target].map(|p| p.as_dvec3() + origin);
         Camera::look_at("auto", eye, target, default_fovy)
     };
     let camera: Camera = match camera {
@@ -202,7 +227,7 @@ pub(crate) fn view(
     Ok(to_view(&camera, stage.local(camera.position), near, size))
 }
 
-fn to_view(camera: &Camera, eye: Vec3, near: f32, size: [u32; 2]) -> View {
+fn to_view(camera: &Camera, eye: DVec3, near: f32, size: [u32; 2]) -> View {
     let right = camera.forward.cross(camera.up).normalize();
     let scale_y = (1.0 / (camera.fovy_rad * 0.5).tan()) as f32;
     View {
@@ -255,7 +280,7 @@ mod tests {
     fn a_camera_becomes_the_view_that_looks_the_same_way() {
         let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 1.0, 8.0));
         let camera = Camera::look_at("c", eye, target, 1.0);
-        let ours = to_view(&camera, eye.as_vec3(), 0.1, [640, 360]);
+        let ours = to_view(&camera, eye, 0.1, [640, 360]);
         let theirs = View::look_at(eye.as_vec3(), target.as_vec3(), 1.0, 0.1, [640, 360]);
         for (a, b) in [
             (ours.right, theirs.right),

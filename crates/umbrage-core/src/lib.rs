@@ -3,7 +3,8 @@
 //! Data flows one way: a [`Mesh`] becomes a [`World`](world::World) (welded vertices, unique
 //! edges, BVH order); each [`Light`] queries it for a subset of triangles; signed edge counters
 //! turn the subset into silhouette quads ([`volume`]); [`frame`] decides per view how each light
-//! is drawn. Positions are f32, relative to one f64 world origin.
+//! is drawn. Positions are f64: vertices are kept as two f32 ([`place`]) where one is not enough, lights
+//! and eyes as they are.
 #![deny(unsafe_code)]
 
 pub mod cull;
@@ -12,6 +13,7 @@ pub mod frame;
 mod lanes64;
 pub mod light;
 pub mod mesh;
+pub mod place;
 mod stamp;
 pub mod volume;
 pub mod world;

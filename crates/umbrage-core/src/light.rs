@@ -1,6 +1,8 @@
 //! Plain lights.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+
+use crate::place;
 
 /// Where a light shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,12 +25,11 @@ pub enum LightShape {
 
 /// A light as the shadow system sees it: no colour, no intensity.
 ///
-/// The f32 position *is* the light: facing, eye count, GPU and oracle all use these very bits,
-/// so no two stages can disagree about where the light stands.
+/// Facing, eye count and oracle use the position as it is; the GPU has 48 bits of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// World space, relative to the world origin.
-    pub position: Vec3,
+    pub position: DVec3,
     /// Distance beyond which the light does not shine, in metres; infinity is allowed.
     pub range: f32,
     /// Where it shines.
@@ -38,12 +39,24 @@ pub struct Light {
 impl Light {
     /// Homogeneous position: `(p, 1)` for point and spot lights, `(-direction, 0)` for a
     /// directional one. A world point `x` is extruded along `x * w - xyz`.
-    pub fn homogeneous(&self) -> [f32; 4] {
+    pub fn homogeneous(&self) -> [f64; 4] {
         match self.shape {
-            LightShape::Directional { direction } => (-direction).extend(0.0),
+            LightShape::Directional { direction } => (-direction).as_dvec3().extend(0.0),
             _ => self.position.extend(1.0),
         }
         .to_array()
+    }
+
+    /// [`Light::homogeneous`] as two f32 each (see [`place`]): rounded, and what that leaves.
+    pub fn homogeneous_f32(&self) -> [[f32; 4]; 2] {
+        let [x, y, z, w] = self.homogeneous();
+        let [position, residual] = place::split(DVec3::new(x, y, z));
+        [position.extend(w as f32), residual.extend(0.0)].map(|v| v.to_array())
+    }
+
+    /// The position rounded to f32, and what that leaves.
+    pub fn position_f32(&self) -> [Vec3; 2] {
+        place::split(self.position)
     }
 
     /// Whether the light comes from infinitely far.

@@ -1,7 +1,9 @@
 //! Plain triangles, as a host hands them over.
 
 use bytemuck::{CheckedBitPattern, NoUninit};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+
+use crate::place::{Places, split};
 
 /// Which sides of a triangle cast shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, CheckedBitPattern, NoUninit)]
@@ -39,11 +41,14 @@ impl Casting {
 
 /// A triangle soup: any winding, any connectivity, duplicates and holes allowed.
 ///
-/// Positions are world space, in metres, relative to an origin that the host keeps.
+/// Positions are world space, in metres, relative to an origin that the host keeps. Those that f32
+/// cannot hold come with [`Mesh::residuals`]; [`Mesh::stand`] makes both from f64.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertex positions; equal positions may appear many times.
     pub positions: Vec<Vec3>,
+    /// What f32 leaves of each position: a vertex stands at the sum. Empty where f32 holds them all.
+    pub residuals: Vec<Vec3>,
     /// Three indices into `positions` a triangle; counter-clockwise seen from its front.
     pub triangles: Vec<[u32; 3]>,
     /// One rule a triangle.
@@ -51,9 +56,39 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Where the vertices stand.
+    #[inline]
+    pub fn places(&self) -> Places<'_> {
+        Places {
+            positions: &self.positions,
+            residuals: &self.residuals,
+        }
+    }
+
     /// The three corners of triangle `t`.
     #[inline]
-    pub fn corners(&self, t: usize) -> [Vec3; 3] {
-        self.triangles[t].map(|v| self.positions[v as usize])
+    pub fn corners(&self, t: usize) -> [DVec3; 3] {
+        self.triangles[t].map(|v| self.places().at(v))
+    }
+
+    /// Moves vertices from `first` on to f64 places: to 48 bits if the mesh has residuals, else to f32.
+    pub fn put(&mut self, first: usize, places: impl IntoIterator<Item = DVec3>) {
+        for (v, p) in (first..).zip(places) {
+            let [position, residual] = split(p);
+            self.positions[v] = position;
+            if let Some(old) = self.residuals.get_mut(v) {
+                *old = residual;
+            }
+        }
+    }
+
+    /// Replaces positions and residuals by those of f64 places, to 48 bits each. There are no
+    /// residuals if f32 holds every place.
+    pub fn stand(&mut self, places: impl IntoIterator<Item = DVec3>) {
+        let both = places.into_iter().map(|p| <(Vec3, Vec3)>::from(split(p)));
+        (self.positions, self.residuals) = both.collect();
+        if self.residuals.iter().all(|r| *r == Vec3::ZERO) {
+            self.residuals.clear();
+        }
     }
 }

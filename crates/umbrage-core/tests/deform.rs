@@ -22,6 +22,7 @@ fn all_seams(mesh: &Mesh) -> (Mesh, Vec<u32>) {
             .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
             .collect(),
         casting: mesh.casting.clone(),
+        ..Mesh::default()
     };
     (seams, keys)
 }
@@ -107,7 +108,10 @@ fn a_deformed_world_casts_what_the_same_triangles_cast() {
                 let nodes = object.extent.nodes.start as usize..object.extent.nodes.end as usize;
                 for node in &world.bvh.nodes[nodes] {
                     for p in node.range().flat_map(|t| world.corners(t)) {
-                        assert!(p.cmpge(node.min).all() && p.cmple(node.max).all());
+                        assert!(
+                            p.cmpge(node.min.as_dvec3()).all()
+                                && p.cmple(node.max.as_dvec3()).all()
+                        );
                     }
                 }
             }
@@ -226,6 +230,7 @@ fn hinge() -> Mesh {
         positions: vec![a, b, Vec3::Y, a, b, Vec3::Z, Vec3::ONE],
         triangles: vec![[0, 1, 2], [4, 3, 5]],
         casting: vec![Casting::Both; 2],
+        ..Mesh::default()
     }
 }
 

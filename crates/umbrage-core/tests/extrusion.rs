@@ -15,14 +15,15 @@ use umbrage_core::{Casting, Light, Mesh, View};
 
 /// As the shader moves a vertex, in f32.
 fn moved(light: &Light, p: Vec3, distance: f32) -> DVec3 {
-    let away = p - light.position;
+    let at = light.position.as_vec3();
+    let away = p - at;
     let away = away / away.abs().max_element();
-    let length = p.distance(light.position);
+    let length = p.distance(at);
     let far = match length >= distance {
         true => p,
-        false => light.position + away / away.length() * distance,
+        false => at + away / away.length() * distance,
     };
-    far.as_dvec3() - light.position.as_dvec3()
+    far.as_dvec3() - light.position
 }
 
 fn to_segment(a: DVec3, b: DVec3) -> f64 {
@@ -157,6 +158,7 @@ fn distances_are_no_longer_than_needed() {
         positions: vec![Vec3::X, Vec3::Y, Vec3::Z],
         triangles: vec![[0, 1, 2]],
         casting: vec![Casting::Both],
+        ..Mesh::default()
     };
     let world = World::build(&mesh).unwrap();
     let light = point_light(Vec3::ZERO, 2.0);
@@ -283,7 +285,7 @@ fn a_plan_used_again_is_the_plan_made_anew() {
     let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
     let mut kept = FramePlan::default();
     for round in 0..12 {
-        lights[round % 5].position += 0.1 * r.point();
+        lights[round % 5].position += 0.1 * r.point().as_dvec3();
         builder.settle(&world, &lights, |_| true, &mut volumes);
         let mut options = options(Distance::Corrected);
         if round % 3 == 2 {

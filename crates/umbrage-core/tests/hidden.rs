@@ -49,12 +49,12 @@ fn ray(light: &Light, p: DVec3) -> (DVec3, DVec3) {
             let d = 100.0 * direction.as_dvec3();
             (p - d, d)
         }
-        _ => (light.position.as_dvec3(), p - light.position.as_dvec3()),
+        _ => (light.position, p - light.position),
     }
 }
 
 fn in_reach(light: &Light, p: DVec3) -> bool {
-    let v = p - light.position.as_dvec3();
+    let v = p - light.position;
     match light.shape {
         LightShape::Directional { .. } => true,
         LightShape::Point => v.length() <= f64::from(light.range),
@@ -69,8 +69,7 @@ fn in_reach(light: &Light, p: DVec3) -> bool {
 }
 
 /// Where the ray meets a triangle grown by `grow` in barycentric coordinates.
-fn hit([a, b, c]: [Vec3; 3], start: DVec3, along: DVec3, grow: f64) -> Option<f64> {
-    let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+fn hit([a, b, c]: [DVec3; 3], start: DVec3, along: DVec3, grow: f64) -> Option<f64> {
     let (u, v) = (b - a, c - a);
     let p = along.cross(v);
     let determinant = u.dot(p);
@@ -92,7 +91,7 @@ fn shaded(world: &World, light: &Light, casters: &[u32], p: DVec3, grow: f64) ->
 }
 
 fn point_of(world: &World, t: u32, r: &mut Random) -> DVec3 {
-    let [a, b, c] = world.corners(t).map(Vec3::as_dvec3);
+    let [a, b, c] = world.corners(t);
     let (u, v) = (f64::from(r.signed().abs()), f64::from(r.signed().abs()));
     let (u, v) = if u + v > 1.0 {
         (1.0 - u, 1.0 - v)
@@ -511,7 +510,7 @@ fn quads_behind_the_prefix_do_not_matter() {
             let unsorted = sorted.clone();
             let prefix = range_first(&world, &light, &mut sorted, &mut Vec::new());
             let class = |q: &Quad| {
-                let ends = q.ends(&world.edges).map(|v| world.positions[v as usize]);
+                let ends = q.ends(&world.edges).map(|v| world.places().at(v));
                 QuadReach::new(&light).of_edge(ends)
             };
             let mut stable = unsorted.clone();
@@ -525,17 +524,14 @@ fn quads_behind_the_prefix_do_not_matter() {
 
             let all = sorted.len() as u32;
             for _ in 0..40 {
-                let (eye, seen) = (1.5 * r.point(), 1.5 * r.point().as_dvec3());
+                let [eye, seen] = [0; 2].map(|_| 1.5 * r.point().as_dvec3());
                 let drawn = prefix.for_eye(&light, eye, all);
                 if !in_reach(&light, seen) {
                     continue;
                 }
                 for q in &sorted[drawn as usize..] {
-                    let ends = q.ends(&world.edges).map(|v| world.positions[v as usize]);
-                    assert!(
-                        !crosses(&light, ends, eye.as_dvec3(), seen),
-                        "{light:?} {eye} {seen}"
-                    );
+                    let ends = q.ends(&world.edges).map(|v| world.places().at(v));
+                    assert!(!crosses(&light, ends, eye, seen), "{light:?} {eye} {seen}");
                 }
             }
         }
@@ -544,9 +540,9 @@ fn quads_behind_the_prefix_do_not_matter() {
 }
 
 /// Whether a segment crosses the quad of an edge (an infinite one).
-fn crosses(light: &Light, ends: [Vec3; 2], from: DVec3, to: DVec3) -> bool {
-    let [a, b] = ends.map(Vec3::as_dvec3);
-    let apex = light.position.as_dvec3();
+fn crosses(light: &Light, ends: [DVec3; 2], from: DVec3, to: DVec3) -> bool {
+    let [a, b] = ends;
+    let apex = light.position;
     let normal = (a - apex).cross(b - apex);
     let (h, k) = (normal.dot(from - apex), normal.dot(to - apex));
     if h * k >= 0.0 {
@@ -570,7 +566,7 @@ fn quads_of_the_prefix_do_matter() {
     let mut list = quads(&world, &chain(&world, &light));
     let prefix = range_first(&world, &light, &mut list, &mut Vec::new());
     let crossed = list[..prefix.reach as usize].iter().filter(|q| {
-        let ends = q.ends(&world.edges).map(|v| world.positions[v as usize]);
+        let ends = q.ends(&world.edges).map(|v| world.places().at(v));
         (0..50).any(|_| crosses(&light, ends, r.point().as_dvec3(), r.point().as_dvec3()))
     });
     assert!(crossed.count() > 20);

@@ -87,7 +87,7 @@ fn kept_volumes_equal_rebuilt_ones() {
             match step % 5 {
                 4 => {
                     let at = 1 + play.random.below(lights.len() - 1);
-                    lights[at].position += 0.2 * play.random.point();
+                    lights[at].position += 0.2 * play.random.point().as_dvec3();
                 }
                 _ => play.step(),
             }
@@ -185,7 +185,10 @@ fn posed_objects_are_where_the_tree_says() {
                 &world.bvh.nodes[object.extent.nodes.start as usize..][..object.extent.nodes.len()]
             {
                 for corner in node.range().flat_map(|t| world.corners(t)) {
-                    assert!(corner.cmpge(node.min).all() && corner.cmple(node.max).all());
+                    assert!(
+                        corner.cmpge(node.min.as_dvec3()).all()
+                            && corner.cmple(node.max.as_dvec3()).all()
+                    );
                 }
             }
         }
@@ -196,7 +199,7 @@ fn posed_objects_are_where_the_tree_says() {
             let objects = world.objects.iter();
             let expected: Vec<u32> = objects
                 .flat_map(|o| o.extent.triangles.clone())
-                .filter(|&t| reach.touches(world.corners(t)))
+                .filter(|&t| reach.touches(world.bounds(t)))
                 .collect();
             let found: Vec<u32> = subset.triangles().collect();
             assert!(expected.iter().all(|t| found.contains(t)));

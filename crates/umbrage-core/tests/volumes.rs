@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use common::{Random, dense_soup, grid, point_light, spot, strewn_soup, sun};
 use glam::{DVec3, Vec3};
+use umbrage_core::place::Places;
 use umbrage_core::volume::{
     Chain, ChainTriangle, Quad, VolumeBuilder, Volumes, brute, check_closed, counter, facing,
     plain_counter,
@@ -48,7 +49,7 @@ fn a_query_returns_what_the_reach_touches() {
         for light in lights(seed) {
             let reach = Reach::new(&light);
             let all = 0..world.triangles.len() as u32;
-            let touched: Vec<u32> = all.filter(|&t| reach.touches(world.corners(t))).collect();
+            let touched: Vec<u32> = all.filter(|&t| reach.touches(world.bounds(t))).collect();
             let found: Vec<u32> = subset(&world, &light).triangles().collect();
             if matches!(light.shape, umbrage_core::LightShape::Spot { .. }) {
                 // A node outside the cone takes all its triangles with it.
@@ -72,7 +73,7 @@ fn a_query_loses_no_triangle_in_reach() {
         for light in lights(seed) {
             let found: Vec<u32> = subset(&world, &light).triangles().collect();
             for t in 0..world.triangles.len() as u32 {
-                let [a, b, c] = world.corners(t).map(Vec3::as_dvec3);
+                let [a, b, c] = world.corners(t);
                 let (u, v) = (f64::from(r.signed().abs()), f64::from(r.signed().abs()));
                 let (u, v) = if u + v > 1.0 {
                     (1.0 - u, 1.0 - v)
@@ -89,7 +90,7 @@ fn a_query_loses_no_triangle_in_reach() {
 }
 
 fn in_reach(light: &Light, p: DVec3) -> bool {
-    let v = p - light.position.as_dvec3();
+    let v = p - light.position;
     match light.shape {
         umbrage_core::LightShape::Directional { .. } => true,
         umbrage_core::LightShape::Point => v.length() <= f64::from(light.range),
@@ -108,6 +109,14 @@ fn a_small_range_takes_a_small_part() {
     let world = World::build(&grid(20)).unwrap();
     let found = subset(&world, &point_light(Vec3::new(0.5, 0.5, 0.5), 1.0));
     assert!(found.len() <= 18, "{} triangles within 1 m", found.len());
+}
+
+fn planes_of(corners: &[Vec3; 3]) -> Planes {
+    let places = Places {
+        positions: corners,
+        residuals: &[],
+    };
+    Planes::new(places, &[[0, 1, 2]])
 }
 
 /// On integer coordinates the determinant is exact in i64: sides must agree with it, also where
@@ -131,7 +140,8 @@ fn sides_are_exact() {
         in_plane += u32::from(exact == 0);
         let f = |p: [i64; 3]| Vec3::from(p.map(|x| x as f32));
         let corners = [f(a), f(b), f(c)];
-        let planes = Planes::new(&corners, &[[0, 1, 2]]);
+        let planes = planes_of(&corners);
+        let corners = corners.map(Vec3::as_dvec3);
         let light = LightPoint::new(&point_light(f(l), 1.0));
         assert_eq!(
             planes.side(0, &light, || corners),
@@ -151,7 +161,8 @@ fn one_ulp_off_the_plane_is_off_the_plane() {
     for far in [0.0f32, 1e3, 1e6] {
         let corners = [[0.0, 1.0, 0.0], [0.0, 1.0, 8.0], [8.0, 1.0, 0.0]]
             .map(|p| Vec3::from(p) + Vec3::new(far, 0.0, -far));
-        let planes = Planes::new(&corners, &[[0, 1, 2]]);
+        let planes = planes_of(&corners);
+        let corners = corners.map(Vec3::as_dvec3);
         for (y, side) in [(1.0f32, 0), (1.0f32.next_up(), 1), (1.0f32.next_down(), -1)] {
             let light = point_light(Vec3::new(far + 3.0, y, 2.0 - far), 9.0);
             assert_eq!(planes.side(0, &LightPoint::new(&light), || corners), side);

@@ -14,6 +14,7 @@ fn mesh(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
         positions: positions.iter().copied().map(Vec3::from).collect(),
         triangles: triangles.to_vec(),
         casting: vec![Casting::Both; triangles.len()],
+        ..Mesh::default()
     }
 }
 

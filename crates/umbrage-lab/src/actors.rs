@@ -67,11 +67,11 @@ impl Stage {
         let there = |actor: &&Actor| self.world.object(actor.object).is_ok();
         let there: Vec<Actor> = self.actors.iter().filter(there).cloned().collect();
         for actor in &there {
-            let vertices = actor.vertices.start as usize..actor.vertices.end as usize;
-            let placed = &self.soup.positions[vertices.clone()];
-            let deformed = self.world.deform(actor.object, placed);
+            let places = actor.vertices.clone().map(|v| self.soup.place(v));
+            let places: Vec<glam::DVec3> = places.collect();
+            let deformed = self.world.deform(actor.object, &places);
             deformed.map_err(|error| StageError::actor(&self.scene, actor.instance, error))?;
-            self.mesh.positions[vertices].copy_from_slice(placed);
+            self.mesh.put(actor.vertices.start as usize, places);
         }
         self.scene.follow(&posed);
         self.posed = posed;
@@ -87,8 +87,7 @@ impl Stage {
             let instance = &self.scene.instances[actor.instance as usize];
             let of = &self.scene.meshes[instance.mesh as usize];
             posed.positions(instance, of, self.soup.origin, &mut placed);
-            let vertices = actor.vertices.start as usize..actor.vertices.end as usize;
-            mesh.positions[vertices].copy_from_slice(&placed);
+            mesh.put(actor.vertices.start as usize, placed.iter().copied());
         }
         mesh
     }
@@ -145,7 +144,8 @@ pub(crate) fn insert(
         let vertices = soup.vertices[instance as usize].clone();
         let positions = vertices.start as usize..vertices.end as usize;
         let part = Mesh {
-            positions: mesh.positions[positions].to_vec(),
+            positions: mesh.positions[positions.clone()].to_vec(),
+            residuals: mesh.residuals.get(positions).unwrap_or_default().to_vec(),
             triangles: (mesh.triangles[triangles.clone()].iter())
                 .map(|t| t.map(|v| v - vertices.start))
                 .collect(),

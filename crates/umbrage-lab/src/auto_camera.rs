@@ -183,9 +183,9 @@ impl<'a> Search<'a> {
             let most = lamp.range.min(self.surface.size());
             let free = self
                 .surface
-                .hit(lamp.position, away, most)
+                .hit(lamp.position.as_vec3(), away, most)
                 .map_or(most, |hit| hit.distance);
-            let eye = lamp.position + away * (free * random.between(0.1, 0.7));
+            let eye = lamp.position.as_vec3() + away * (free * random.between(0.1, 0.7));
             eyes.push(self.at_eye_level(eye, &mut random));
         }
         for _ in 0..4 * EYES {
@@ -435,7 +435,7 @@ fn towards(light: &Light, point: Vec3, size: f32) -> Option<(Vec3, f32)> {
     if let LightShape::Directional { direction } = light.shape {
         return Some((-direction, 4.0 * size));
     }
-    let way = light.position - point;
+    let way = light.position.as_vec3() - point;
     let squared = way.length_squared();
     if squared > light.range * light.range || squared == 0.0 {
         return None;
@@ -522,6 +522,7 @@ pub(crate) mod shapes {
             positions: (0..8).map(corner).collect(),
             triangles,
             casting,
+            ..Mesh::default()
         }
     }
 
@@ -548,7 +549,7 @@ mod tests {
 
     fn lamp(x: f32, y: f32, z: f32, range: f32) -> Light {
         Light {
-            position: Vec3::new(x, y, z),
+            position: glam::DVec3::new(x.into(), y.into(), z.into()),
             range,
             shape: LightShape::Point,
         }

@@ -75,6 +75,15 @@ pub enum GpuError {
     /// Reading results back failed.
     #[error("the device was lost while a frame was read back: {0}")]
     Readback(String),
+    /// A world that f32 cannot hold, and a method that has no more.
+    #[error(
+        "{method} works with f32 positions, which cannot hold this world: \
+         choose a method that counts volumes, or an --origin near the scene"
+    )]
+    NeedsF32 {
+        /// Its name.
+        method: String,
+    },
     /// The method makes no mask that could be applied so.
     #[error(transparent)]
     NoMask(#[from] crate::application::NoMask),

@@ -135,6 +135,11 @@ impl Lab {
         draw: LightDraw,
         volume_color: VolumeColor,
     ) -> Result<Run, GpuError> {
+        if !stage.world.residuals.is_empty() && !method.takes_residuals() {
+            return Err(GpuError::NeedsF32 {
+                method: method.name().into_owned(),
+            });
+        }
         let targets = Targets::new(&self.gpu, view.size)?;
         let mut shadows = ShadowRenderer::new(
             &self.gpu.device,

@@ -33,6 +33,8 @@ struct LightUniform {
     cos_outer: f32,
     cos_inner: f32,
     unused: [f32; 3],
+    residual: [f32; 3],
+    padding: f32,
 }
 
 impl From<&StageLight> for LightUniform {
@@ -45,8 +47,11 @@ impl From<&StageLight> for LightUniform {
             } => (1, direction, cos_outer),
             LightShape::Directional { direction } => (2, direction, -1.0),
         };
+        let [position, residual] = l.light.position_f32();
         Self {
-            position: l.light.position.to_array(),
+            position: position.to_array(),
+            residual: residual.to_array(),
+            padding: 0.0,
             range: l.light.range,
             power: l.power.to_array(),
             kind,

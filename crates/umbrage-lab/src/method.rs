@@ -225,6 +225,11 @@ impl Method {
         }
     }
 
+    /// Whether it draws worlds with residuals (see [`umbrage::place`]); else f32 must hold the world.
+    pub fn takes_residuals(self) -> bool {
+        !matches!(self, Method::RayTrace | Method::ShadowMap { .. })
+    }
+
     /// The most layers that its mask can represent on the way to a count, where it has a mask at
     /// full resolution.
     pub fn layers(self) -> Option<u32> {

@@ -92,7 +92,7 @@ impl Surface {
     pub(crate) fn new(mesh: &Mesh) -> Self {
         let (mut triangles, mut two_sided) = (Vec::new(), Vec::new());
         for t in 0..mesh.triangles.len() {
-            let [v0, v1, v2] = mesh.corners(t).map(Vec3A::from);
+            let [v0, v1, v2] = mesh.corners(t).map(|p| Vec3A::from(p.as_vec3()));
             let doubled = (v1 - v0).cross(v2 - v0);
             if doubled.is_finite() && doubled.length_squared() > 0.0 {
                 triangles.push(Triangle { v0, v1, v2 });
@@ -325,6 +325,7 @@ mod tests {
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::NAN],
             triangles: vec![[0, 1, 1], [0, 1, 2]],
             casting: vec![Casting::Front; 2],
+            ..Mesh::default()
         };
         assert!(seeded_lights(&flat, 64, 0).is_empty());
     }

@@ -159,6 +159,7 @@ impl Stage {
         drop_blended(&scene, &mut soup);
         let mut mesh = Mesh {
             positions: soup.positions.clone(),
+            residuals: soup.residuals.clone(),
             triangles: soup.triangles.clone(),
             casting: casting(&scene, &soup, casters),
         };
@@ -169,8 +170,14 @@ impl Stage {
             if let Err(error) = welded.weld_within(weld_m) {
                 return Err(StageError::new(&scene, None, error.into()));
             }
-            soup.positions[..vertices].copy_from_slice(&welded.positions);
-            mesh.positions[..vertices].copy_from_slice(&welded.positions);
+            for (all, ours) in [
+                (&mut soup.positions, &welded.positions),
+                (&mut soup.residuals, &welded.residuals),
+                (&mut mesh.positions, &welded.positions),
+                (&mut mesh.residuals, &welded.residuals),
+            ] {
+                all[..ours.len()].copy_from_slice(ours);
+            }
             never_moves = Cow::Owned(welded);
         }
         let mut world = match open_or_build(&never_moves, world_file) {
@@ -198,9 +205,9 @@ impl Stage {
         }
     }
 
-    /// A world point relative to the world origin, rounded once.
-    pub fn local(&self, p: DVec3) -> Vec3 {
-        (p - self.soup.origin).as_vec3()
+    /// A world point relative to the world origin.
+    pub fn local(&self, p: DVec3) -> DVec3 {
+        p - self.soup.origin
     }
 
     /// The scene's own lights. `range_m` replaces every finite light's range; without it a light
@@ -266,6 +273,7 @@ fn first(mesh: &Mesh, vertices: usize, triangles: usize) -> Cow<'_, Mesh> {
     }
     Cow::Owned(Mesh {
         positions: mesh.positions[..vertices].to_vec(),
+        residuals: mesh.residuals.get(..vertices).unwrap_or_default().to_vec(),
         triangles: mesh.triangles[..triangles].to_vec(),
         casting: mesh.casting[..triangles].to_vec(),
     })

@@ -37,7 +37,7 @@ pub use error::SceneError;
 pub use progress::Progress;
 pub use report::LoadReport;
 pub use scene::{AlphaMode, Camera, Image, Instance, Light, LightKind, Material, Mesh, Scene};
-pub use soup::{MAX_TRIANGLES, Soup};
+pub use soup::{MAX_ROUNDING_M, MAX_TRIANGLES, Soup};
 
 /// Loads a `.glb`, `.gltf` or `.obj` file, chosen by its extension.
 ///

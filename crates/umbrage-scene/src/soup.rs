@@ -2,7 +2,8 @@
 //!
 //! Takes a [`Scene`]; gives a [`Soup`]. Transforms are applied in f64 and rounded to f32 once,
 //! after the origin is subtracted, so an identity transform keeps the bits of the file and a world
-//! far from zero keeps its detail. A transform that mirrors reverses the winding, so that the front
+//! far from zero keeps its detail. Where that rounding would move a vertex by more than
+//! [`MAX_ROUNDING_M`], what it leaves is kept as well. A transform that mirrors reverses the winding, so that the front
 //! of a triangle stays its front; what mirrors does so by how it stands at rest (or, without volume
 //! then, as soon as it has one), so that triangles are the same at all times.
 
@@ -16,6 +17,10 @@ use crate::{Instance, Mesh, Scene, SceneError};
 /// Most triangles that [`Scene::soup`] gives.
 pub const MAX_TRIANGLES: u64 = 200_000_000;
 
+/// How far rounding to f32 may move a vertex along an axis, in metres: an eighth of a millimetre, as
+/// happens from 2 km on.
+pub const MAX_ROUNDING_M: f32 = 1.0 / 8192.0;
+
 /// One world-space triangle soup.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Soup {
@@ -25,6 +30,8 @@ pub struct Soup {
     pub origin: DVec3,
     /// World position minus origin; vertices are shared inside an instance, not between them.
     pub positions: Vec<Vec3>,
+    /// What f32 leaves of each position; empty where that is nowhere more than [`MAX_ROUNDING_M`].
+    pub residuals: Vec<Vec3>,
     /// Three indices into `positions` a triangle; counter-clockwise seen from its front.
     pub triangles: Vec<[u32; 3]>,
     /// One index into [`Scene::materials`] a triangle.
@@ -81,6 +88,7 @@ impl Scene {
             ..Soup::default()
         };
         self.reserve(&mut soup.positions, vertices)?;
+        self.reserve(&mut soup.residuals, vertices)?;
         self.reserve(&mut soup.triangles, triangles)?;
         self.reserve(&mut soup.material, triangles)?;
         self.reserve(&mut soup.instance, triangles)?;
@@ -91,7 +99,11 @@ impl Scene {
             let (instance, mesh) = used[index];
             let base = soup.positions.len();
             let placing = posed.placing(instance, mesh);
-            placing.place(mesh, soup.origin, &mut soup.positions);
+            placing.place(mesh, soup.origin, |p| {
+                let [position, residual] = split(p);
+                soup.positions.push(position);
+                soup.residuals.push(residual);
+            });
             soup.vertices[index] = base as u32..soup.positions.len() as u32;
             if let Some(v) = soup.positions[base..].iter().position(|p| !p.is_finite()) {
                 let what = format!("vertex {v} is not finite in world space");
@@ -106,6 +118,10 @@ impl Scene {
             };
             append(&mut soup, &part, [shaded, textured]);
         }
+        let moved = |r: &Vec3| r.abs().max_element() > MAX_ROUNDING_M;
+        if !soup.residuals.iter().any(moved) {
+            soup.residuals = Vec::new();
+        }
         Ok(soup)
     }
 
@@ -118,7 +134,19 @@ impl Scene {
     }
 }
 
+/// A place rounded to f32, and what that leaves.
+fn split(p: DVec3) -> [Vec3; 2] {
+    let position = p.as_vec3();
+    [position, (p - position.as_dvec3()).as_vec3()]
+}
+
 impl Soup {
+    /// Where vertex `v` stands relative to the origin.
+    pub fn place(&self, v: u32) -> DVec3 {
+        let residual = self.residuals.get(v as usize).copied();
+        self.positions[v as usize].as_dvec3() + residual.unwrap_or(Vec3::ZERO).as_dvec3()
+    }
+
     /// Moves instances of `scene` to where `posed` puts them: their positions and normals. Each comes
     /// with its share of `triangles`.
     pub fn repose(
@@ -127,7 +155,6 @@ impl Soup {
         posed: &Posed,
         instances: impl Iterator<Item = (u32, Range<usize>)>,
     ) {
-        let mut placed = Vec::new();
         for (index, range) in instances {
             let Some(instance) = scene.instances.get(index as usize) else {
                 continue;
@@ -140,10 +167,15 @@ impl Soup {
                 continue;
             };
             let placing = posed.placing(instance, mesh);
-            placed.clear();
-            placing.place(mesh, self.origin, &mut placed);
-            let old = &mut self.positions[vertices.start as usize..vertices.end as usize];
-            old.copy_from_slice(&placed);
+            let mut at = vertices.start as usize;
+            placing.place(mesh, self.origin, |p| {
+                let [position, residual] = split(p);
+                self.positions[at] = position;
+                if let Some(old) = self.residuals.get_mut(at) {
+                    *old = residual;
+                }
+                at += 1;
+            });
             if !self.normals.is_empty() {
                 let part = Part {
                     index,
@@ -154,7 +186,7 @@ impl Soup {
                 };
                 let triangles = self.triangles[range.clone()].iter();
                 let triangles = triangles.zip(&mut self.normals[range]);
-                shade(&part, &self.positions, triangles);
+                shade(&part, [&self.positions, &self.residuals], triangles);
             }
         }
     }
@@ -210,12 +242,13 @@ fn append(soup: &mut Soup, part: &Part<'_>, [shaded, textured]: [bool; 2]) {
         soup.normals.resize(soup.triangles.len(), [Vec3::ZERO; 3]);
         let Soup {
             positions,
+            residuals,
             triangles,
             normals,
             ..
         } = soup;
         let triangles = triangles[first..].iter().zip(&mut normals[first..]);
-        shade(part, positions, triangles);
+        shade(part, [positions, residuals], triangles);
     }
 }
 
@@ -223,7 +256,7 @@ fn append(soup: &mut Soup, part: &Part<'_>, [shaded, textured]: [bool; 2]) {
 /// where it has none.
 fn shade<'t>(
     part: &Part<'_>,
-    positions: &[Vec3],
+    [positions, residuals]: [&[Vec3]; 2],
     triangles: impl Iterator<Item = (&'t [u32; 3], &'t mut [Vec3; 3])>,
 ) {
     let turned = |linear: DMat3| cofactors(linear) * if part.mirrored { -1.0 } else { 1.0 };
@@ -233,7 +266,10 @@ fn shade<'t>(
     };
     let mesh = part.mesh;
     for (corners, normals) in triangles {
-        let [p, q, r] = corners.map(|v| positions[v as usize].as_dvec3());
+        let [p, q, r] = corners.map(|v| {
+            let residual = residuals.get(v as usize).copied();
+            positions[v as usize].as_dvec3() + residual.unwrap_or(Vec3::ZERO).as_dvec3()
+        });
         let face = (q - p).cross(r - p).try_normalize().unwrap_or(DVec3::Y);
         *normals = corners.map(|v| {
             let v = (v - part.base) as usize;

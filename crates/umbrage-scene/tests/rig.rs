@@ -21,7 +21,7 @@ fn positions(scene: &Scene, time_s: f64) -> Vec<Vec3> {
     let mut positions = Vec::new();
     let posed = scene.posed(time_s);
     posed.positions(instance, mesh, DVec3::ZERO, &mut positions);
-    positions
+    positions.iter().map(|p| p.as_vec3()).collect()
 }
 
 fn bounds(positions: &[Vec3]) -> [Vec3; 2] {

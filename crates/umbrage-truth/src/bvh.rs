@@ -5,7 +5,7 @@
 //! corners, and every triangle lies in one leaf (`validate`, run by debug builds).
 //! Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies".
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 #[cfg(any(test, debug_assertions))]
@@ -28,6 +28,20 @@ impl Box3 {
         min: Vec3::INFINITY,
         max: Vec3::NEG_INFINITY,
     };
+
+    /// The smallest in f32 that holds the corners.
+    fn around(low: DVec3, high: DVec3) -> Self {
+        let (mut min, mut max) = (low.as_vec3(), high.as_vec3());
+        for axis in 0..3 {
+            if f64::from(min[axis]) > low[axis] {
+                min[axis] = min[axis].next_down();
+            }
+            if f64::from(max[axis]) < high[axis] {
+                max[axis] = max[axis].next_up();
+            }
+        }
+        Self { min, max }
+    }
 
     fn grow(&mut self, other: &Self) {
         self.min = self.min.min(other.min);
@@ -70,17 +84,17 @@ struct Pending {
 
 impl Bvh {
     /// Builds over `triangles` (indices into `corners`) and reorders them into slots.
-    pub(crate) fn build(corners: &[[Vec3; 3]], triangles: &mut [u32]) -> Self {
+    pub(crate) fn build(corners: &[[DVec3; 3]], triangles: &mut [u32]) -> Self {
         if triangles.is_empty() {
             return Self::default();
         }
         let primitives: Vec<Primitive> = corners
             .par_iter()
             .map(|c| {
-                let (min, max) = (c[0].min(c[1]).min(c[2]), c[0].max(c[1]).max(c[2]));
+                let bounds = Box3::around(c[0].min(c[1]).min(c[2]), c[0].max(c[1]).max(c[2]));
                 Primitive {
-                    bounds: Box3 { min, max },
-                    centre: min * 0.5 + max * 0.5,
+                    centre: bounds.min * 0.5 + bounds.max * 0.5,
+                    bounds,
                 }
             })
             .collect();

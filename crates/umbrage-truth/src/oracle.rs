@@ -8,7 +8,7 @@
 
 use std::ops::ControlFlow;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 use umbrage_core::{Casting, Light, LightShape, Mesh, View};
 
@@ -64,7 +64,7 @@ pub struct FirstHit {
 pub struct Oracle {
     pub(crate) bvh: Bvh,
     // By slot (leaf order of the hierarchy).
-    pub(crate) corners: Vec<[Vec3; 3]>,
+    pub(crate) corners: Vec<[DVec3; 3]>,
     pub(crate) normals: Vec<DVec3>,
     pub(crate) casting: Vec<Casting>,
     triangle: Vec<u32>,
@@ -97,14 +97,11 @@ impl Oracle {
             mesh.casting.len(),
             "one casting rule a triangle"
         );
-        let corners: Vec<[Vec3; 3]> = (0..mesh.triangles.len())
+        let corners: Vec<[DVec3; 3]> = (0..mesh.triangles.len())
             .into_par_iter()
             .map(|t| mesh.corners(t))
             .collect();
-        let normals: Vec<DVec3> = corners
-            .par_iter()
-            .map(|c| normal(&c.map(Vec3::as_dvec3)))
-            .collect();
+        let normals: Vec<DVec3> = corners.par_iter().map(normal).collect();
         let mut triangle: Vec<u32> = (0..corners.len() as u32)
             .filter(|&t| {
                 let n = normals[t as usize];
@@ -160,7 +157,7 @@ impl Oracle {
     }
 
     pub(crate) fn corners(&self, slot: usize) -> [DVec3; 3] {
-        self.corners[slot].map(Vec3::as_dvec3)
+        self.corners[slot]
     }
 
     /// Where the ray hits the triangle, in front of the eye; with the side that the eye is on.
@@ -285,7 +282,7 @@ pub(crate) struct Memory {
 
 /// Whether `point` is nearer than the light's range, and inside its cone.
 fn reaches(light: &Light, point: DVec3) -> bool {
-    let from_light = point - light.position.as_dvec3();
+    let from_light = point - light.position;
     let range = f64::from(light.range);
     match light.shape {
         LightShape::Directional { .. } => true,

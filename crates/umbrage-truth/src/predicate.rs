@@ -49,8 +49,8 @@ pub(crate) fn side_of_point(corners: &[DVec3; 3], p: DVec3) -> i8 {
 
 /// The side of the triangle's plane that infinitely far `towards` is on: the sign of
 /// `((b - a) x (c - a)) . towards`, exact.
-pub(crate) fn side_of_direction(corners: &[Vec3; 3], towards: Vec3) -> i8 {
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
+pub(crate) fn side_of_direction(corners: &[DVec3; 3], towards: Vec3) -> i8 {
+    let [a, b, c] = *corners;
     let (u, v, w) = (b - a, c - a, towards.as_dvec3());
     let volume = w.dot(u.cross(v));
     if volume.abs() > ORIENT_BOUND * norm1(u) * norm1(v) * norm1(w) {
@@ -59,16 +59,19 @@ pub(crate) fn side_of_direction(corners: &[Vec3; 3], towards: Vec3) -> i8 {
     exact_direction_sign([a, b, c], w)
 }
 
-/// Sign of `w . (a x b + b x c + c x a)`, for f32 values: each product of two is exact in f64,
-/// each product of three is a sum of two f64.
+/// Sign of `w . (a x b + b x c + c x a)`: each product of two is a sum of two f64, each product of
+/// three one of four.
 fn exact_direction_sign(corners: [DVec3; 3], w: DVec3) -> i8 {
     let mut sum = Expansion::default();
     for k in 0..3 {
         let (p, q) = (corners[k], corners[(k + 1) % 3]);
         for axis in 0..3 {
             let (y, z) = ((axis + 1) % 3, (axis + 2) % 3);
-            sum.add_product(p[y] * q[z], w[axis]);
-            sum.add_product(-(p[z] * q[y]), w[axis]);
+            for (factor, other) in [(p[y], q[z]), (-p[z], q[y])] {
+                let product = factor * other;
+                sum.add_product(factor.mul_add(other, -product), w[axis]);
+                sum.add_product(product, w[axis]);
+            }
         }
     }
     sum.sign()
@@ -168,15 +171,11 @@ pub(crate) fn normal(corners: &[DVec3; 3]) -> DVec3 {
 mod tests {
     use super::*;
 
-    const FLOOR: [Vec3; 3] = [
-        Vec3::ZERO,
-        Vec3::new(1.0, 0.0, 0.0),
-        Vec3::new(0.0, 1.0, 0.0),
-    ];
+    const FLOOR: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
 
     #[test]
     fn front_is_counter_clockwise() {
-        let floor = FLOOR.map(Vec3::as_dvec3);
+        let floor = FLOOR;
         assert_eq!(side_of_point(&floor, DVec3::new(0.3, 0.3, 1.0)), 1);
         assert_eq!(side_of_point(&floor, DVec3::new(0.3, 0.3, -1e-300)), -1);
         assert_eq!(side_of_point(&floor, DVec3::new(7.0, -5.0, 0.0)), 0);
@@ -194,7 +193,8 @@ mod tests {
             Vec3::new(big, 0.0, 0.0),
             Vec3::new(-big, 0.0, 0.0),
             Vec3::new(0.0, 1.0, small),
-        ];
+        ]
+        .map(Vec3::as_dvec3);
         // normal is along (0, 2 big small, -2 big) up to sign; a direction in the plane, tilted
         // by one unit in the last place of f32.
         let flat = Vec3::new(0.0, 1.0, small);

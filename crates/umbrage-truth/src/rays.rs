@@ -1,6 +1,6 @@
 //! Eye rays: from a view and a pixel position to a line in world space.
 //!
-//! Takes a [`View`], whose f32 numbers count as exact; gives rays in f64. Invariant: a ray is the
+//! Takes a [`View`], whose numbers count as exact; gives rays in f64. Invariant: a ray is the
 //! exact line through two f64 points, so every decision about it is about one and the same line,
 //! and its parameter is the distance along the view's forward axis.
 
@@ -60,7 +60,7 @@ impl EyeRays {
             view.forward.as_dvec3(),
         );
         let det = right.dot(up.cross(forward));
-        let eye = view.eye.as_dvec3();
+        let eye = view.eye;
         let largest = eye.abs().max_element().max(1.0);
         Self {
             eye,

@@ -26,7 +26,7 @@ impl Source {
     pub(crate) fn of(light: &Light) -> Self {
         match light.shape {
             LightShape::Directional { direction } => Self::Far(-direction),
-            LightShape::Point | LightShape::Spot { .. } => Self::Near(light.position.as_dvec3()),
+            LightShape::Point | LightShape::Spot { .. } => Self::Near(light.position),
         }
     }
 }

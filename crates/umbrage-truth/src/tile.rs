@@ -89,7 +89,7 @@ pub(crate) fn samples(
         max = max.max(pixel.surface.point);
     }
     for (index, light) in lights.iter().enumerate() {
-        let position = light.position.as_dvec3();
+        let position = light.position;
         let range = f64::from(light.range);
         // The distance to the box is rounded by a few ulp; 2^-40 keeps the cull conservative.
         let outside = position.distance(position.clamp(min, max)) > range * (1.0 + 1e-12);

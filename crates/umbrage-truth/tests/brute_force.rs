@@ -35,9 +35,7 @@ fn soup(random: &mut Random, count: usize, size: f32, offset: Vec3) -> Mesh {
 }
 
 fn corners(mesh: &Mesh) -> Vec<[DVec3; 3]> {
-    (0..mesh.triangles.len())
-        .map(|t| mesh.corners(t).map(Vec3::as_dvec3))
-        .collect()
+    (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect()
 }
 
 /// Answers closer to an edge or an end than this are not compared.
@@ -102,7 +100,7 @@ fn first_hits_equal_a_loop_over_triangles() {
             view.forward = Vec3::new(0.0, 0.0, -1.25);
         }
         let rays = EyeRays::new(&view, NearClip::Clamped);
-        let eye = view.eye.as_dvec3();
+        let eye = view.eye;
         for _ in 0..200 {
             let x = f64::from(random.unit() * 8.0 + 8.0);
             let y = f64::from(random.unit() * 6.0 + 6.0);

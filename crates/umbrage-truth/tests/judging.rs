@@ -107,7 +107,7 @@ fn edge_beside_centres(offset_px: f32) -> Judgement {
         Casting::Front,
     );
     let view = View {
-        eye: p(0.0, 0.0, 8.0),
+        eye: p(0.0, 0.0, 8.0).into(),
         right: Vec3::X,
         up: Vec3::Y,
         forward: Vec3::NEG_Z,

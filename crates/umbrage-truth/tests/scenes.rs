@@ -135,7 +135,7 @@ fn spots_end_at_their_cone_and_range() {
             cos_outer: 0.8,
         };
         let light = Light {
-            position,
+            position: position.into(),
             range,
             shape,
         };
@@ -229,7 +229,7 @@ fn coincident_triangles_are_one_surface() {
 /// image is exactly 0.25 wide.
 fn square_view() -> View {
     View {
-        eye: Vec3::new(0.0, 0.0, 8.0),
+        eye: Vec3::new(0.0, 0.0, 8.0).into(),
         right: Vec3::X,
         up: Vec3::Y,
         forward: Vec3::NEG_Z,

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use thiserror::Error;
 use umbrage_core::cull::Culls;
 use umbrage_core::frame::{Extrusion, FramePlan};
+use umbrage_core::place::split;
 use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, View};
 use wgpu::TextureFormat;
@@ -102,13 +103,18 @@ pub struct ViewUniform {
     forward: [f32; 3],
     width: f32,
     height: f32,
-    unused: [f32; 3],
+    vertex_floats: u32,
+    unused: [f32; 2],
+    eye_residual: [f32; 3],
+    padding: f32,
 }
 
-impl From<&View> for ViewUniform {
-    fn from(view: &View) -> Self {
+impl ViewUniform {
+    /// `vertex_floats`: f32 values of a vertex in the buffer of positions.
+    pub(crate) fn new(view: &View, vertex_floats: u32) -> Self {
+        let [eye, eye_residual] = split(view.eye);
         Self {
-            eye: view.eye.to_array(),
+            eye: eye.to_array(),
             scale_x: view.scale_x,
             right: view.right.to_array(),
             scale_y: view.scale_y,
@@ -117,7 +123,10 @@ impl From<&View> for ViewUniform {
             forward: view.forward.to_array(),
             width: view.size[0] as f32,
             height: view.size[1] as f32,
-            unused: [0.0; 3],
+            vertex_floats,
+            unused: [0.0; 2],
+            eye_residual: eye_residual.to_array(),
+            padding: 0.0,
         }
     }
 }

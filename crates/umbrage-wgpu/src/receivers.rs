@@ -64,6 +64,7 @@ impl LightCalls {
 #[repr(C)]
 struct PlanUniform {
     homogeneous: [f32; 4],
+    residual: [f32; 4],
     axis: [f32; 3],
     cos_outer: f32,
     tiles: [u32; 4],
@@ -242,8 +243,10 @@ impl PlanUniform {
             } => (direction.to_array(), cos_outer),
             _ => ([0.0; 3], -1.0),
         };
+        let [homogeneous, residual] = light.homogeneous_f32();
         Self {
-            homogeneous: light.homogeneous(),
+            homogeneous,
+            residual,
             axis,
             cos_outer,
             tiles: [

@@ -125,8 +125,9 @@ impl ShadowRenderer {
         if !self.world.is_filled() {
             return Err(RenderError::NoWorld);
         }
-        let homogeneous: Vec<[f32; 4]> = frame.lights.iter().map(Light::homogeneous).collect();
-        let view = ViewUniform::from(frame.view);
+        let homogeneous: Vec<[[f32; 4]; 2]> =
+            frame.lights.iter().map(Light::homogeneous_f32).collect();
+        let view = ViewUniform::new(frame.view, self.world.vertex_floats());
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.view_size = frame.view.size;
         self.light_count = frame.lights.len().min(frame.plan.lights.len()) as u32;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
 use umbrage_core::world::{Extent, World};
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, Device, Queue, ShaderStages};
 
@@ -10,8 +11,10 @@ use crate::buffers::{Growing, Written};
 
 #[derive(Debug)]
 pub(crate) struct WorldBuffers {
-    /// Tightly packed f32 triples.
+    /// Tightly packed f32 triples; of a world with residuals, two a vertex.
     positions: Growing,
+    /// Positions and residuals of a world that has residuals, as uploaded.
+    both: Vec<[Vec3; 2]>,
     /// u32 pairs.
     edges: Growing,
     /// u32 triples.
@@ -45,6 +48,7 @@ impl WorldBuffers {
         let buffer = |label| Growing::new(device, label, BufferUsages::empty());
         Self {
             positions: buffer("umbrage positions"),
+            both: Vec::new(),
             edges: buffer("umbrage edges"),
             triangles: buffer("umbrage triangles"),
             layout: layout(device),
@@ -56,6 +60,11 @@ impl WorldBuffers {
     /// Whether a world was uploaded.
     pub(crate) fn is_filled(&self) -> bool {
         self.seen.stamp != 0
+    }
+
+    /// f32 values a vertex.
+    pub(crate) fn vertex_floats(&self) -> u32 {
+        if self.both.is_empty() { 3 } else { 6 }
     }
 
     /// What the three take.
@@ -115,7 +124,7 @@ impl WorldBuffers {
         ];
         // Until all is written, the buffers hold no world.
         let mut seen = std::mem::take(&mut self.seen);
-        if seen.fixed != world.fixed_stamp {
+        if seen.fixed != world.fixed_stamp || self.both.is_empty() != world.residuals.is_empty() {
             seen = Seen::default();
         }
         let grown = |i: usize| seen.lengths[i].min(lengths[i])..lengths[i];
@@ -137,10 +146,18 @@ impl WorldBuffers {
             };
         }
         let mut written = Written::default();
-        let bytes = bytemuck::cast_slice(&world.positions);
-        written += self
-            .positions
-            .write_changed(device, queue, bytes, in_bytes(&positions, 12))?;
+        self.both.resize(world.residuals.len(), [Vec3::ZERO; 2]);
+        let (bytes, item) = if world.residuals.is_empty() {
+            (bytemuck::cast_slice(&world.positions), 12)
+        } else {
+            for v in positions.iter().cloned().flatten().map(|v| v as usize) {
+                self.both[v] = [world.positions[v], world.residuals[v]];
+            }
+            (bytemuck::cast_slice(&self.both), 24)
+        };
+        written +=
+            self.positions
+                .write_changed(device, queue, bytes, in_bytes(&positions, item))?;
         let bytes = bytemuck::cast_slice(&world.edges.vertices);
         written += self
             .edges

@@ -14,6 +14,8 @@
 //!     positions: vec![Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(1.0, 1.0, 0.0)],
 //!     triangles: vec![[0, 1, 2]],
 //!     casting: vec![Casting::Both],
+//!,
+//!     ..Mesh::default()
 //! };
 //! let world = World::build(&mesh)?;
 //! let light = Light { position: Vec3::new(0.2, 3.0, 0.2), range: 10.0, shape: LightShape::Point };
@@ -35,7 +37,7 @@
 //! # use glam::{DVec3, Vec3};
 //! # let mut world = World::build(&Mesh::default())?;
 //! # let mesh = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Z], triangles: vec![[0, 2, 1]],
-//! #     casting: vec![Casting::Both] };
+//! #     casting: vec![Casting::Both], ..Mesh::default() };
 //! # let lights = [Light { position: Vec3::Y, range: 5.0, shape: LightShape::Point }; 3];
 //! # let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
 //! let door = world.insert(&mesh, &Pose::at(DVec3::ZERO))?;
@@ -93,6 +95,7 @@ pub use umbrage_core::frame::{
     self, Distance, Extrusion, FramePlan, LightPath, LightPlan, PathRule, PlanOptions, Rect,
     SkipReason, ZFailReason,
 };
+pub use umbrage_core::place;
 pub use umbrage_core::volume::{self, Construction, VolumeBuilder, Volumes};
 pub use umbrage_core::world::{
     self, ObjectError, ObjectId, Pose, SavedWorldError, World, WorldError, WorldReport,

@@ -37,6 +37,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         casting: casting(&scene, &soup, options.casters.into()),
         positions: soup.positions,
         triangles: soup.triangles,
+        ..Mesh::default()
     };
     weld_first(&mut mesh, fixed, options.weld)
         .map_err(|error| StageError::new(&scene, None, error.into()))?;

@@ -50,7 +50,7 @@ pub fn light_rect(view: &View, light: &Light) -> Rect {
     if light.is_directional() || !light.range.is_finite() {
         return Rect::full(view);
     }
-    let q = (light.position - view.eye).as_dvec3();
+    let q = light.position - view.eye;
     let radius = f64::from(light.range) * (1.0 + 1e-6) + q.length() * 1e-6;
     let depth = q.dot(view.forward.as_dvec3());
     if depth <= -radius {

@@ -63,8 +63,8 @@ impl Distance {
             Distance::Range => light.range,
             Distance::Corrected if least_cosine < LEAST_COSINE => f32::INFINITY,
             Distance::Corrected => {
-                // Far from the world's origin the light's own place is known to 2^-24 of that.
-                let place = f64::from(light.position.abs().max_element());
+                // Far from the world's origin an f32 place is known to 2^-24 of that.
+                let place = light.position.abs().max_element();
                 ((range * (1.0 + SLACK) + place / (1 << 20) as f64) / least_cosine) as f32
             }
         }
@@ -73,10 +73,10 @@ impl Distance {
 
 /// The least cosine of the far edges of `quads`: of half the widest angle that one of them subtends.
 pub fn sides_cosine(world: &World, light: &Light, quads: &[Quad]) -> f64 {
-    let light = light.position.as_dvec3();
+    let light = light.position;
     let cosine = |quad: &Quad| {
         let ends = quad.ends(&world.edges);
-        let rays = ends.map(|v| ray(light, world.positions[v as usize]));
+        let rays = ends.map(|v| ray(light, world.places().at(v)));
         cosine_about(rays[0] + rays[1], &rays)
     };
     quads.iter().map(cosine).fold(1.0, f64::min)
@@ -84,9 +84,9 @@ pub fn sides_cosine(world: &World, light: &Light, quads: &[Quad]) -> f64 {
 
 /// The least cosine of the caps of `chain`: of the widest half angle of a cone around one of them.
 pub fn caps_cosine(world: &World, light: &Light, chain: &[Chain]) -> f64 {
-    let light = light.position.as_dvec3();
+    let light = light.position;
     let triangles = chain.iter().flat_map(Chain::triangles);
-    let cosine = |corners: [glam::Vec3; 3]| {
+    let cosine = |corners: [DVec3; 3]| {
         let rays = corners.map(|p| ray(light, p));
         let [a, b, c] = rays;
         let normal = (b - a).cross(c - a);
@@ -107,8 +107,8 @@ fn cosine_about(axis: DVec3, rays: &[DVec3]) -> f64 {
 }
 
 /// Unit direction from the light to `p`; zero where f32 has none.
-fn ray(light: DVec3, p: glam::Vec3) -> DVec3 {
-    (p.as_dvec3() - light).normalize_or_zero()
+fn ray(light: DVec3, p: DVec3) -> DVec3 {
+    (p - light).normalize_or_zero()
 }
 
 /// What of a light's volume is drawn.
@@ -163,7 +163,7 @@ impl Cosines {
 }
 
 /// Whether the eye is outside the light's range, where finite volumes end.
-pub(super) fn is_beyond_range(light: &Light, eye: glam::Vec3) -> bool {
-    let distance = (eye.as_dvec3() - light.position.as_dvec3()).length();
+pub(super) fn is_beyond_range(light: &Light, eye: DVec3) -> bool {
+    let distance = (eye - light.position).length();
     !light.is_directional() && distance > f64::from(light.range)
 }

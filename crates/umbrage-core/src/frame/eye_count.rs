@@ -38,7 +38,7 @@ pub fn eye_count(
     light: &Light,
     chain: &[Chain],
     quads: &[Quad],
-    eye: glam::Vec3,
+    eye: DVec3,
 ) -> EyeCount {
     let segment = Segment::new(world, light, eye);
     let mut count = 0;
@@ -54,14 +54,13 @@ pub fn eye_count(
             continue;
         }
         for t in node.range() {
-            let corners = world.corners(t);
-            if !segment.meets_box_of(corners) {
+            let p = world.corners(t);
+            if !segment.meets_box_of(p) {
                 continue;
             }
             let Some(c) = coefficient_in(chain, t) else {
                 continue;
             };
-            let p = corners.map(glam::Vec3::as_dvec3);
             let on_side = (0..3).any(|k| {
                 segment.eye_near_side(p[k], p[(k + 1) % 3]) && {
                     let edge = world.edges.of_triangle(t)[k].edge();
@@ -108,9 +107,8 @@ struct Segment {
 }
 
 impl Segment {
-    fn new(world: &World, light: &Light, eye: glam::Vec3) -> Self {
-        let eye = eye.as_dvec3();
-        let [x, y, z, w] = light.homogeneous().map(f64::from);
+    fn new(world: &World, light: &Light, eye: DVec3) -> Self {
+        let [x, y, z, w] = light.homogeneous();
         let toward = DVec3::new(x, y, z);
         // Beyond every box, seen from the eye.
         let beyond = || {
@@ -152,8 +150,8 @@ impl Segment {
         near <= far + 1e-9
     }
 
-    fn meets_box_of(&self, [a, b, c]: [glam::Vec3; 3]) -> bool {
-        self.meets_box(a.min(b).min(c).as_dvec3(), a.max(b).max(c).as_dvec3())
+    fn meets_box_of(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        self.meets_box(a.min(b).min(c), a.max(b).max(c))
     }
 
     /// Direction of extrusion at `p`.

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::DVec3;
 
 use super::bounds::{Rect, light_rect};
 use super::extrusion::{Cosines, Drawn, Extrusion, is_beyond_range};
@@ -159,13 +159,13 @@ impl LightPlan {
 /// Eye counts of the last plan, by the stamp of each light's volume.
 #[derive(Clone, Debug, Default)]
 struct EyeCounts {
-    eye: Option<Vec3>,
+    eye: Option<DVec3>,
     lights: Vec<(u64, EyeCount)>,
 }
 
 impl EyeCounts {
     /// Forgets what is not of this eye.
-    fn look_from(&mut self, eye: Vec3, lights: usize) {
+    fn look_from(&mut self, eye: DVec3, lights: usize) {
         if self.eye != Some(eye) {
             self.lights.clear();
             self.eye = Some(eye);

@@ -1,17 +1,17 @@
 //! The eye: the one set of numbers from which CPU, GPU and oracle derive every eye ray.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A perspective view with reversed, infinite depth (`depth = near / distance`).
 ///
 /// For a world point `p` with `q = p - eye`:
 /// clip = (`scale_x * right.q`, `scale_y * up.q`, `near`, `forward.q`).
-/// These f32 values are the view; they need not be orthonormal to the last bit, because every
+/// These values are the view; they need not be orthonormal to the last bit, because every
 /// user computes with the same ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// World space, relative to the world origin.
-    pub eye: Vec3,
+    pub eye: DVec3,
     /// Towards +x on screen.
     pub right: Vec3,
     /// Towards +y on screen (up).
@@ -30,8 +30,15 @@ pub struct View {
 
 impl View {
     /// A view from `eye` towards `target`, +y up (or +z where the view is vertical).
-    pub fn look_at(eye: Vec3, target: Vec3, fovy_rad: f32, near: f32, size: [u32; 2]) -> Self {
-        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+    pub fn look_at(
+        eye: impl Into<DVec3>,
+        target: impl Into<DVec3>,
+        fovy_rad: f32,
+        near: f32,
+        size: [u32; 2],
+    ) -> Self {
+        let eye = eye.into();
+        let forward = (target.into() - eye).as_vec3().normalize_or(Vec3::NEG_Z);
         let up_hint = if forward.y.abs() > 0.999 {
             Vec3::Z
         } else {

@@ -3,17 +3,17 @@
 #![allow(unsafe_code, reason = "measured: see the head of `lanes64`")]
 
 use std::arch::x86_64::{
-    __m256, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadl_epi64, _mm256_add_ps, _mm256_and_ps,
-    _mm256_and_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi8, _mm256_cvtepu8_epi32,
-    _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_ps, _mm256_movemask_epi8, _mm256_movemask_ps,
-    _mm256_mul_ps, _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi32,
-    _mm256_set1_epi64x, _mm256_set1_ps, _mm256_setzero_ps, _mm256_shuffle_epi8, _mm256_srli_epi16,
-    _mm256_storeu_si256, _mm256_sub_ps, _mm256_xor_si256,
+    __m256, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadl_epi64, _mm256_add_ps, _mm256_and_si256,
+    _mm256_cmp_ps, _mm256_cmpeq_epi8, _mm256_cvtepu8_epi32, _mm256_loadu_ps, _mm256_loadu_si256,
+    _mm256_max_ps, _mm256_movemask_epi8, _mm256_movemask_ps, _mm256_mul_ps,
+    _mm256_permutevar8x32_epi32, _mm256_set1_epi8, _mm256_set1_epi32, _mm256_set1_epi64x,
+    _mm256_set1_ps, _mm256_setzero_ps, _mm256_shuffle_epi8, _mm256_srli_epi16, _mm256_storeu_si256,
+    _mm256_sub_ps, _mm256_xor_si256,
 };
 
 use super::{InstructionSet, Lanes64};
 use crate::volume::Quad;
-use crate::world::{BoxCluster, EdgeUse, FILTER, LANES, LightPoint, PlaneCluster};
+use crate::world::{BoxCluster, EdgeUse, LANES, NearLight, PlaneCluster};
 
 /// Proof that the processor has AVX2.
 #[derive(Clone, Copy, Debug)]
@@ -87,14 +87,14 @@ unsafe fn beside2(boxes: &BoxCluster, axis: usize, chunk: usize, center: f32) ->
 
 impl Lanes64 for Avx2 {
     #[inline(always)]
-    fn sides(self, planes: &PlaneCluster, light: &LightPoint) -> (u64, u64) {
+    fn sides(self, planes: &PlaneCluster, light: &NearLight) -> (u64, u64) {
         // SAFETY: the features are there (see `Avx2`), and chunks stay below 8.
         unsafe {
             let [x, y, z, w] = light.homogeneous;
             let (x, y) = (_mm256_set1_ps(x), _mm256_set1_ps(y));
             let (z, w) = (_mm256_set1_ps(z), _mm256_set1_ps(w));
-            let (norm1, filter) = (_mm256_set1_ps(light.norm1), _mm256_set1_ps(FILTER));
-            let magnitude = _mm256_castsi256_ps(_mm256_set1_epi32(0x7fff_ffff));
+            let bound = _mm256_set1_ps(light.bound);
+            let minus = _mm256_set1_ps(-light.bound);
             let (mut front, mut back) = (0, 0);
             for chunk in 0..LANES / 8 {
                 // No fused operations: the same roundings as the portable version.
@@ -103,9 +103,6 @@ impl Lanes64 for Avx2 {
                 let s = _mm256_add_ps(s, _mm256_mul_ps(load(&planes.ny, chunk), y));
                 let s = _mm256_add_ps(s, _mm256_mul_ps(load(&planes.nz, chunk), z));
                 let s = _mm256_sub_ps(s, dw);
-                let size = _mm256_add_ps(norm1, _mm256_and_ps(dw, magnitude));
-                let bound = _mm256_mul_ps(filter, size);
-                let minus = _mm256_sub_ps(_mm256_setzero_ps(), bound);
                 let is_front = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(s, bound));
                 let is_back = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(s, minus));
                 front |= u64::from(is_front as u8) << (8 * chunk);

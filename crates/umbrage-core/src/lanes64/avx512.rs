@@ -3,16 +3,15 @@
 #![allow(unsafe_code, reason = "measured: see the head of `lanes64`")]
 
 use std::arch::x86_64::{
-    __m512, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm512_abs_ps, _mm512_add_ps, _mm512_cmp_ps_mask,
-    _mm512_loadu_ps, _mm512_loadu_si512, _mm512_maskz_compress_epi32, _mm512_max_ps,
-    _mm512_movepi8_mask, _mm512_movm_epi8, _mm512_mul_ps, _mm512_permutexvar_epi8,
-    _mm512_set1_epi32, _mm512_set1_ps, _mm512_setzero_ps, _mm512_storeu_si512, _mm512_sub_ps,
-    _mm512_xor_si512,
+    __m512, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm512_add_ps, _mm512_cmp_ps_mask, _mm512_loadu_ps,
+    _mm512_loadu_si512, _mm512_maskz_compress_epi32, _mm512_max_ps, _mm512_movepi8_mask,
+    _mm512_movm_epi8, _mm512_mul_ps, _mm512_permutexvar_epi8, _mm512_set1_epi32, _mm512_set1_ps,
+    _mm512_setzero_ps, _mm512_storeu_si512, _mm512_sub_ps, _mm512_xor_si512,
 };
 
 use super::{InstructionSet, Lanes64};
 use crate::volume::Quad;
-use crate::world::{BoxCluster, EdgeUse, FILTER, LANES, LightPoint, PlaneCluster};
+use crate::world::{BoxCluster, EdgeUse, LANES, NearLight, PlaneCluster};
 
 /// Proof that the processor has AVX-512 F, BW and VBMI.
 #[derive(Clone, Copy, Debug)]
@@ -62,14 +61,15 @@ unsafe fn beside2(boxes: &BoxCluster, axis: usize, chunk: usize, center: f32) ->
 
 impl Lanes64 for Avx512 {
     #[inline(always)]
-    fn sides(self, planes: &PlaneCluster, light: &LightPoint) -> (u64, u64) {
+    fn sides(self, planes: &PlaneCluster, light: &NearLight) -> (u64, u64) {
         // SAFETY: the features are there (see `Avx512`), and each load of 16 lanes stays
         // inside an array of 64.
         unsafe {
             let [x, y, z, w] = light.homogeneous;
             let (x, y) = (_mm512_set1_ps(x), _mm512_set1_ps(y));
             let (z, w) = (_mm512_set1_ps(z), _mm512_set1_ps(w));
-            let (norm1, filter) = (_mm512_set1_ps(light.norm1), _mm512_set1_ps(FILTER));
+            let bound = _mm512_set1_ps(light.bound);
+            let minus = _mm512_set1_ps(-light.bound);
             let (mut front, mut back) = (0, 0);
             for chunk in 0..LANES / 16 {
                 let load = |a: &[f32; LANES]| _mm512_loadu_ps(a.as_ptr().add(16 * chunk));
@@ -79,8 +79,6 @@ impl Lanes64 for Avx512 {
                 let s = _mm512_add_ps(s, _mm512_mul_ps(load(&planes.ny), y));
                 let s = _mm512_add_ps(s, _mm512_mul_ps(load(&planes.nz), z));
                 let s = _mm512_sub_ps(s, dw);
-                let bound = _mm512_mul_ps(filter, _mm512_add_ps(norm1, _mm512_abs_ps(dw)));
-                let minus = _mm512_sub_ps(_mm512_setzero_ps(), bound);
                 front |= u64::from(_mm512_cmp_ps_mask::<_CMP_GT_OQ>(s, bound)) << (16 * chunk);
                 back |= u64::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(s, minus)) << (16 * chunk);
             }

@@ -20,7 +20,7 @@ pub(crate) use avx512::Avx512;
 pub(crate) use portable::Portable;
 
 use crate::volume::Quad;
-use crate::world::{BoxCluster, EdgeUse, LANES, LightPoint, PlaneCluster};
+use crate::world::{BoxCluster, EdgeUse, LANES, NearLight, PlaneCluster};
 
 /// What volumes are computed with; results are the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -78,7 +78,7 @@ impl InstructionSet {
 /// See the module.
 pub(crate) trait Lanes64: Copy {
     /// Triangles proven in front of, and behind, the light's side of their plane.
-    fn sides(self, planes: &PlaneCluster, light: &LightPoint) -> (u64, u64);
+    fn sides(self, planes: &PlaneCluster, light: &NearLight) -> (u64, u64);
 
     /// The boxes whose distance from `center` is at most the root of `range2`.
     fn near(self, boxes: &BoxCluster, center: [f32; 3], range2: f32) -> u64;
@@ -145,14 +145,17 @@ mod tests {
                 ny: lanes(),
                 nz: lanes(),
                 d: lanes(),
+                center: [0.0; 3],
+                radius: 0.0,
+                unused: [0.0; 12],
             };
             let boxes = BoxCluster {
                 min: [lanes(), lanes(), lanes()],
                 max: [lanes(), lanes(), lanes()],
             };
-            let light = LightPoint {
+            let light = NearLight {
                 homogeneous: [1.5, -0.25, 3.0, 1.0],
-                norm1: 4.75,
+                bound: 0.125,
             };
             assert_eq!(wide.sides(&planes, &light), Portable.sides(&planes, &light));
             let near = |r| {

@@ -3,7 +3,7 @@
 
 use super::Lanes64;
 use crate::volume::Quad;
-use crate::world::{BoxCluster, EdgeUse, FILTER, LANES, LightPoint, PlaneCluster};
+use crate::world::{BoxCluster, EdgeUse, LANES, NearLight, PlaneCluster};
 
 /// Any processor.
 #[derive(Clone, Copy, Debug)]
@@ -24,15 +24,14 @@ fn bits(bytes: &[u8; LANES]) -> u64 {
 
 impl Lanes64 for Portable {
     #[inline(always)]
-    fn sides(self, planes: &PlaneCluster, light: &LightPoint) -> (u64, u64) {
+    fn sides(self, planes: &PlaneCluster, light: &NearLight) -> (u64, u64) {
         let [x, y, z, w] = light.homogeneous;
         let (mut front, mut back) = ([0; LANES], [0; LANES]);
         for i in 0..LANES {
             let dw = planes.d[i] * w;
             let s = planes.nx[i] * x + planes.ny[i] * y + planes.nz[i] * z - dw;
-            let bound = FILTER * (light.norm1 + dw.abs());
-            front[i] = u8::from(s > bound);
-            back[i] = u8::from(s < -bound);
+            front[i] = u8::from(s > light.bound);
+            back[i] = u8::from(s < -light.bound);
         }
         (bits(&front), bits(&back))
     }

@@ -25,7 +25,8 @@ fn facing_with<L: Lanes64>(
 ) {
     for members in &subset.members {
         let at = members.cluster as usize;
-        let (mut front, mut back) = l.sides(&world.planes.clusters[at], light);
+        let planes = &world.planes.clusters[at];
+        let (mut front, mut back) = l.sides(planes, &light.from(planes));
         let cluster = &world.clusters[at];
         let casts = members.mask & (cluster.casts_front | cluster.casts_back);
         let open = casts & !(front | back);
@@ -51,7 +52,7 @@ fn exact_sides(world: &World, light: &LightPoint, cluster: u32, open: u64) -> (u
     let (mut front, mut back) = (0, 0);
     for lane in lanes(open) {
         let corners = world.corners(cluster * LANES as u32 + lane);
-        match exact_side(corners, light.homogeneous) {
+        match exact_side(corners, light.exact) {
             1 => front |= 1 << lane,
             -1 => back |= 1 << lane,
             _ => {}

@@ -39,7 +39,6 @@ pub struct QuadReach {
 /// The reach without slack, in f32: where a point is inside, no rounding puts it outside the other.
 #[derive(Clone, Copy, Debug)]
 struct Inner {
-    light: Vec3,
     range2: f32,
     /// Axis and squared cosine; anything is inside if the cosine is negative.
     axis: Vec3,
@@ -48,8 +47,8 @@ struct Inner {
 
 impl Inner {
     #[inline]
-    fn has(&self, p: Vec3) -> bool {
-        let v = p - self.light;
+    fn has(&self, from_light: DVec3) -> bool {
+        let v = from_light.as_vec3();
         let (along, distance2) = (v.dot(self.axis), v.length_squared());
         distance2 <= self.range2
             && (self.cos2 < 0.0 || along > 0.0 && along * along >= self.cos2 * distance2)
@@ -84,12 +83,11 @@ impl QuadReach {
         };
         Self {
             inner: Inner {
-                light: light.position,
                 range2: light.range * light.range,
                 axis,
                 cos2,
             },
-            light: light.position.as_dvec3(),
+            light: light.position,
             range2: if light.is_directional() {
                 f64::INFINITY
             } else {
@@ -109,14 +107,14 @@ impl QuadReach {
     }
 
     /// Where the quad of an edge can matter.
-    pub fn of_edge(&self, ends: [Vec3; 2]) -> QuadRange {
+    pub fn of_edge(&self, ends: [DVec3; 2]) -> QuadRange {
         if self.range2 == f64::INFINITY && self.cone.is_none() {
             return QuadRange::Reach;
         }
-        if self.inner.has(ends[0]) || self.inner.has(ends[1]) {
+        let [a, b] = ends.map(|p| p - self.light);
+        if self.inner.has(a) || self.inner.has(b) {
             return QuadRange::Reach;
         }
-        let [a, b] = ends.map(|p| p.as_dvec3() - self.light);
         if segment_distance2(a, b) > self.range2 {
             return QuadRange::Beyond;
         }
@@ -166,7 +164,7 @@ pub fn range_first(
     let (mut in_reach, mut in_range, mut rest) = (0, 0, quads.len());
     for i in 0..quads.len() {
         let quad = quads[i];
-        let ends = quad.ends(&world.edges).map(|v| world.positions[v as usize]);
+        let ends = quad.ends(&world.edges).map(|v| world.places().at(v));
         match reach.of_edge(ends) {
             QuadRange::Reach => {
                 quads[in_reach] = quad;
@@ -193,8 +191,8 @@ pub fn range_first(
 
 impl RangePrefix {
     /// How many of the light's `all` quads an eye must draw.
-    pub fn for_eye(&self, light: &Light, eye: Vec3, all: u32) -> u32 {
-        let v = eye.as_dvec3() - light.position.as_dvec3();
+    pub fn for_eye(&self, light: &Light, eye: DVec3, all: u32) -> u32 {
+        let v = eye - light.position;
         if light.is_directional() || v.length() > f64::from(light.range) {
             return all;
         }

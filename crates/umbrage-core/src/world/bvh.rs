@@ -64,9 +64,8 @@ pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
     let bounds: Vec<Bounds> = kept
         .par_iter()
         .map(|&t| {
-            Bounds(Aabb::from_points(
-                &mesh.corners(t as usize).map(Vec3A::from),
-            ))
+            let corners = mesh.places().bounds(mesh.triangles[t as usize]);
+            Bounds(Aabb::from_points(&corners.map(Vec3A::from)))
         })
         .collect();
     let tree = build_bvh2(

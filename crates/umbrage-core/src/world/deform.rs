@@ -8,7 +8,7 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3;
+use glam::DVec3;
 
 use super::objects::{ObjectError, ObjectId, Pose};
 use super::stages::{self, Welded};
@@ -64,15 +64,19 @@ impl World {
         self.insert_welded(mesh, pose, |mesh| weld_by_key(mesh, keys))
     }
 
-    /// Gives an object new rest positions, one for each vertex of the mesh that was inserted, in the
+    /// Gives an object new rest positions (`Vec3` or `DVec3`), one for each vertex of the mesh that was inserted, in the
     /// object's own space; its pose stays. Where they are those it has, nothing is done, and nothing
     /// near it is built again. Refused, and nothing changed, if vertices that became one are to part.
-    pub fn deform(&mut self, id: ObjectId, positions: &[Vec3]) -> Result<(), ObjectError> {
+    pub fn deform<P: Copy + PartialEq + Into<DVec3>>(
+        &mut self,
+        id: ObjectId,
+        positions: &[P],
+    ) -> Result<(), ObjectError> {
         let slot = self.slot_of(id)?;
         let object = &self.objects[slot];
         let given = &object.given;
         check_length("positions", positions.len(), given.first.len())?;
-        if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
+        if let Some(vertex) = positions.iter().position(|&p| !p.into().is_finite()) {
             return Err(ObjectError::Mesh(WorldError::NotFinite { vertex }));
         }
         let mut pairs = (0..).zip(&given.first);
@@ -83,8 +87,8 @@ impl World {
                 second: second as u32,
             });
         }
-        let rest = given.vertex.iter().map(|&v| positions[v as usize]);
-        let rest: Vec<Vec3> = rest.collect();
+        let rest = given.vertex.iter().map(|&v| positions[v as usize].into());
+        let rest: Vec<DVec3> = rest.collect();
         if rest == object.rest {
             return Ok(());
         }

@@ -8,6 +8,8 @@ use super::World;
 pub struct WorldMemory {
     /// Positions of vertices.
     pub positions: usize,
+    /// What f32 leaves of them.
+    pub residuals: usize,
     /// Vertices of triangles.
     pub triangles: usize,
     /// Numbers of triangles in the mesh.
@@ -35,9 +37,10 @@ impl WorldMemory {
     }
 
     /// Name and bytes of each array.
-    pub fn by_array(&self) -> [(&'static str, usize); 10] {
+    pub fn by_array(&self) -> [(&'static str, usize); 11] {
         [
             ("positions", self.positions),
+            ("residuals", self.residuals),
             ("triangles", self.triangles),
             ("source", self.source),
             ("casting", self.casting),
@@ -56,6 +59,7 @@ impl World {
     pub fn memory(&self) -> WorldMemory {
         WorldMemory {
             positions: size_of_val(&self.positions[..]),
+            residuals: size_of_val(&self.residuals[..]),
             triangles: size_of_val(&self.triangles[..]),
             source: size_of_val(&self.source[..]),
             casting: size_of_val(&self.casting[..]),

@@ -27,7 +27,7 @@ mod weld;
 
 use std::time::Instant;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use thiserror::Error;
 
 pub use array::Array;
@@ -45,12 +45,13 @@ pub use seen::{Changes, Seen};
 pub use subset::{Members, Subset};
 
 pub(crate) use objects::EMPTY_BOX;
-pub(crate) use planes::{FILTER, exact_side};
+pub(crate) use planes::{NearLight, exact_side};
 pub(crate) use subset::lanes;
 pub use validate::WorldFault;
 
 use self::stages::{Tree, Welded};
 use crate::mesh::{Casting, Mesh};
+use crate::place::Places;
 use crate::stamp;
 
 /// Why a mesh cannot become a world.
@@ -77,6 +78,17 @@ pub enum WorldError {
         vertex: u32,
         /// Vertices given.
         vertices: usize,
+    },
+    /// Residuals do not run parallel to the positions.
+    #[error(
+        "{residuals} residuals for {positions} positions: hand over none, or one a position, \
+         as Mesh::stand does"
+    )]
+    ResidualsLength {
+        /// Residuals given.
+        residuals: usize,
+        /// Positions given.
+        positions: usize,
     },
     /// A position is NaN or infinite.
     #[error("vertex {vertex} is not finite: repair it before building a world")]
@@ -149,6 +161,10 @@ pub struct World {
     /// Positions, numbered by first use in the fixed part and in each object; distinct but in objects
     /// that deform.
     pub positions: Array<Vec3>,
+    /// What f32 leaves of each position (see [`place`](crate::place)); empty in a world that f32
+    /// holds: then objects are rounded to f32 as well.
+    pub residuals: Array<Vec3>,
+    keeps_residuals: bool,
     /// Three vertices a triangle, as wound in the mesh, in BVH leaf order.
     pub triangles: Array<[u32; 3]>,
     /// The triangle's number in the mesh it was built from.
@@ -185,6 +201,7 @@ impl PartialEq for World {
             objects.map(|o| (o.extent.clone(), o.bounds)).collect()
         };
         self.positions == other.positions
+            && self.residuals == other.residuals
             && self.triangles == other.triangles
             && self.source == other.source
             && self.casting == other.casting
@@ -251,6 +268,8 @@ impl World {
 
         let mut world = Self {
             positions: ordered.positions.into(),
+            keeps_residuals: !mesh.residuals.is_empty(),
+            residuals: ordered.residuals.into(),
             triangles: ordered.triangles.into(),
             source: source.into(),
             casting: ordered.casting.into(),
@@ -294,8 +313,34 @@ impl World {
 
     /// The three corners of triangle `t`.
     #[inline]
-    pub fn corners(&self, t: u32) -> [Vec3; 3] {
-        self.triangles[t as usize].map(|v| self.positions[v as usize])
+    pub fn corners(&self, t: u32) -> [DVec3; 3] {
+        self.triangles[t as usize].map(|v| self.places().at(v))
+    }
+
+    /// A box around triangle `t`.
+    #[inline]
+    pub fn bounds(&self, t: u32) -> [Vec3; 2] {
+        self.places().bounds(self.triangles[t as usize])
+    }
+
+    /// Where the vertices stand.
+    #[inline]
+    pub fn places(&self) -> Places<'_> {
+        Places {
+            positions: &self.positions,
+            residuals: &self.residuals,
+        }
+    }
+
+    /// Keeps 48 bits of positions from now on, also of objects: for a world whose objects will stand
+    /// where f32 is too coarse, though its fixed part does not.
+    pub fn keep_residuals(&mut self) {
+        self.keeps_residuals = true;
+        if self.residuals.len() < self.positions.len() {
+            let residuals = self.residuals.to_mut();
+            residuals.resize(self.positions.len(), Vec3::ZERO);
+            self.stamp = stamp::next();
+        }
     }
 }
 
@@ -313,7 +358,16 @@ fn check_input(mesh: &Mesh) -> Result<(), WorldError> {
             limit: World::MAX_TRIANGLES,
         });
     }
-    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
+    let residuals = mesh.residuals.len();
+    if residuals > 0 && residuals != mesh.positions.len() {
+        return Err(WorldError::ResidualsLength {
+            residuals,
+            positions: mesh.positions.len(),
+        });
+    }
+    let both = [&mesh.positions, &mesh.residuals];
+    let not_finite = both.map(|list| list.iter().position(|p| !p.is_finite()));
+    if let Some(vertex) = not_finite.into_iter().flatten().min() {
         return Err(WorldError::NotFinite { vertex });
     }
     let vertices = mesh.positions.len();

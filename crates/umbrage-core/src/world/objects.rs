@@ -4,8 +4,8 @@
 //! query, facing, counter, eye count and renderer need not know one from the other. An object's
 //! topology (edges, clusters, tree) is built once; a pose or new rest positions (see `deform`)
 //! rewrite its positions, planes and boxes.
-//! Its positions are transformed in f64 and rounded once: those f32 positions *are* the geometry,
-//! for CPU, GPU and oracle alike. Edges are never shared between objects: counters add up.
+//! Its positions are transformed in f64 and rounded once, to f32 or, in a world with residuals, to 48
+//! bits: those positions *are* the geometry, for CPU, GPU and oracle alike. Edges are never shared between objects: counters add up.
 
 use std::ops::Range;
 
@@ -17,6 +17,7 @@ use super::extent::Extent;
 use super::stages::{self, Welded};
 use super::{LANES, World, WorldError, boxes, check_input, planes};
 use crate::mesh::{Casting, Mesh};
+use crate::place::{Places, split};
 use crate::stamp;
 
 /// Names an object of one world.
@@ -97,7 +98,7 @@ pub struct Object {
     pub bounds: [Vec3; 2],
     /// Where it stands.
     pub(super) pose: Pose,
-    pub(super) rest: Vec<Vec3>,
+    pub(super) rest: Vec<DVec3>,
     pub(super) given: Given,
 }
 
@@ -127,7 +128,10 @@ impl World {
         if let Err(fault) = part.validate_topology() {
             panic!("World::insert broke an invariant: {fault}");
         }
-        check(&part.positions, pose)?;
+        let rest: Vec<DVec3> = (0..part.positions.len() as u32)
+            .map(|v| part.places().at(v))
+            .collect();
+        check(&rest, pose)?;
         // Padding to whole clusters included.
         let triangles = self.triangles.len() + part.triangles.len() + LANES;
         if triangles > World::MAX_TRIANGLES {
@@ -140,7 +144,7 @@ impl World {
         let placed = stamp::next();
         let object = &mut self.objects[slot];
         object.placed = placed;
-        object.rest = part.positions.to_vec();
+        object.rest = rest;
         object.given = Given::new(mesh, &welded, &part);
         object.extent = object.room.begin(part.fixed.lengths());
         self.write_topology(&part, slot);
@@ -169,8 +173,15 @@ impl World {
         let posed = object.rest.iter().map(|p| placed(rotation, pose, *p));
         let first = object.extent.vertices.start as usize;
         let positions = &mut self.positions.to_mut()[first..];
-        for (to, from) in positions.iter_mut().zip(posed) {
-            *to = from;
+        if self.keeps_residuals {
+            let residuals = &mut self.residuals.to_mut()[first..];
+            for ((p, r), at) in positions.iter_mut().zip(residuals).zip(posed) {
+                [*p, *r] = split(at);
+            }
+        } else {
+            for (p, at) in positions.iter_mut().zip(posed) {
+                [*p, _] = split(at);
+            }
         }
         self.refit(slot);
         self.stamp = stamp::next();
@@ -206,6 +217,7 @@ impl World {
         let kept: Vec<usize> = (0..self.triangles.len()).filter(real).collect();
         Mesh {
             positions: self.positions.to_vec(),
+            residuals: self.residuals.to_vec(),
             triangles: kept.iter().map(|&t| self.triangles[t]).collect(),
             casting: kept.iter().map(|&t| self.casting[t]).collect(),
         }
@@ -224,15 +236,19 @@ impl World {
         let triangles = as_usize(&extent.triangles);
         for (i, chunk) in self.triangles[triangles.clone()].chunks(LANES).enumerate() {
             let cluster = triangles.start / LANES + i;
-            self.planes.clusters.to_mut()[cluster] = planes::plane_cluster(&self.positions, chunk);
-            self.boxes.to_mut()[cluster] = boxes::box_cluster(&self.positions, chunk);
+            let places = Places {
+                positions: &self.positions,
+                residuals: &self.residuals,
+            };
+            self.planes.clusters.to_mut()[cluster] = planes::plane_cluster(places, chunk);
+            self.boxes.to_mut()[cluster] = boxes::box_cluster(places, chunk);
         }
         for i in as_usize(&extent.nodes).rev() {
             let node = self.bvh.nodes[i];
             let (min, max) = if node.is_leaf() {
-                let corners = node.range().flat_map(|t| self.corners(t));
-                corners.fold((EMPTY_BOX[0], EMPTY_BOX[1]), |(min, max), p| {
-                    (min.min(p), max.max(p))
+                let bounds = node.range().map(|t| self.bounds(t));
+                bounds.fold((EMPTY_BOX[0], EMPTY_BOX[1]), |(min, max), [low, high]| {
+                    (min.min(low), max.max(high))
                 })
             } else {
                 let [a, b] = [self.bvh.nodes[i + 1], self.bvh.nodes[node.second as usize]];
@@ -251,15 +267,16 @@ fn as_usize(range: &Range<u32>) -> Range<usize> {
     range.start as usize..range.end as usize
 }
 
-fn placed(rotation: DQuat, pose: &Pose, p: Vec3) -> Vec3 {
-    // Adding zero turns -0 into 0, as welding does.
-    (rotation * p.as_dvec3() + pose.translation).as_vec3() + Vec3::ZERO
+fn placed(rotation: DQuat, pose: &Pose, p: DVec3) -> DVec3 {
+    rotation * p + pose.translation
 }
 
-pub(super) fn check(rest: &[Vec3], pose: &Pose) -> Result<(), ObjectError> {
+pub(super) fn check(rest: &[DVec3], pose: &Pose) -> Result<(), ObjectError> {
     let rotation = pose.rotation.normalize();
     let finite = rotation.is_finite()
         && pose.translation.is_finite()
-        && rest.iter().all(|p| placed(rotation, pose, *p).is_finite());
+        && rest
+            .iter()
+            .all(|p| placed(rotation, pose, *p).as_vec3().is_finite());
     finite.then_some(()).ok_or(ObjectError::Pose)
 }

@@ -14,6 +14,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use bytemuck::{CheckedBitPattern, NoUninit};
+use glam::Vec3;
 use rayon::prelude::*;
 
 pub use self::error::SavedWorldError;
@@ -46,8 +47,13 @@ impl World {
             nodes,
         } = &self.fixed;
         let clusters = 0..triangles.end.div_ceil(LANES as u32);
+        let residuals = match self.keeps_residuals {
+            true => bytes(self.fixed_part(&self.residuals, vertices)),
+            false => bytes(&self.residuals),
+        };
         let arrays: [(&[u8], usize); Section::ALL.len()] = [
             bytes(self.fixed_part(&self.positions, vertices)),
+            residuals,
             bytes(self.fixed_part(&self.triangles, triangles)),
             bytes(self.fixed_part(&self.source, triangles)),
             bytes(self.fixed_part(&self.casting, triangles)),
@@ -108,8 +114,11 @@ impl World {
         }
         let sections = Section::ALL.into_par_iter();
         sections.try_for_each(|section| verify(&file, &contents, section))?;
+        let residuals: Array<Vec3> = array(&file, &contents, Section::Residuals)?;
         let world = Self {
             positions: array(&file, &contents, Section::Positions)?,
+            keeps_residuals: !residuals.is_empty(),
+            residuals,
             triangles: array(&file, &contents, Section::Triangles)?,
             source: array(&file, &contents, Section::Source)?,
             casting: array(&file, &contents, Section::Casting)?,

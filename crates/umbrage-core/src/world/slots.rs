@@ -40,6 +40,10 @@ impl World {
         self.positions
             .to_mut()
             .resize(room.vertices.end as usize, Vec3::ZERO);
+        if self.keeps_residuals {
+            let residuals = self.residuals.to_mut();
+            residuals.resize(room.vertices.end as usize, Vec3::ZERO);
+        }
         self.triangles
             .to_mut()
             .resize(room.triangles.end as usize, PADDING);

@@ -11,7 +11,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::{WorldError, weld};
 use crate::mesh::Mesh;
@@ -35,21 +35,24 @@ impl Mesh {
         if tolerance_m == 0.0 {
             return Ok(0);
         }
-        let (first, _) = weld::weld(&self.positions);
+        let (first, _) = weld::weld(self.places());
         let mut grid = Grid::new(f64::from(tolerance_m));
         let mut moved = 0;
         for (i, &first) in first.iter().enumerate() {
-            let p = self.positions[i];
+            let p = self.places().at(i as u32);
             if !p.is_finite() {
                 continue; // refused by World::build
             }
+            // Where its equal went, the mesh holds already.
             let to = match first as usize == i {
-                true => grid.place(p),
-                // Where its equal went; the mesh holds that already.
-                false => self.positions[first as usize],
+                true => grid.place(i as u32, p),
+                false => first,
             };
-            moved += usize::from(to != p);
-            self.positions[i] = to;
+            moved += usize::from(self.places().at(to) != p);
+            self.positions[i] = self.positions[to as usize];
+            if !self.residuals.is_empty() {
+                self.residuals[i] = self.residuals[to as usize];
+            }
         }
         Ok(moved)
     }
@@ -60,7 +63,8 @@ struct Grid {
     tolerance: f64,
     /// The last that was placed in each cell.
     last: HashMap<Cell, u32>,
-    staying: Vec<Vec3>,
+    /// Number and place.
+    staying: Vec<(u32, DVec3)>,
     /// The one placed in the same cell before.
     before: Vec<u32>,
 }
@@ -89,9 +93,8 @@ impl Grid {
         number.to_array().map(|x| (x + 0.0).to_bits())
     }
 
-    /// Where `p` goes: to the first that stays within the tolerance, or nowhere.
-    fn place(&mut self, p: Vec3) -> Vec3 {
-        let at = p.as_dvec3();
+    /// To whom vertex `v` at `at` goes: to the first that stays within the tolerance, or itself.
+    fn place(&mut self, v: u32, at: DVec3) -> u32 {
         // Above what the subtraction is rounded by where neighbouring floats can be this near.
         let reach = DVec3::splat(self.tolerance * 1.0001);
         let (low, high) = (self.cell(at - reach), self.cell(at + reach));
@@ -101,7 +104,7 @@ impl Grid {
                 for z in either(low[2], high[2]) {
                     let mut next = self.last.get(&[x, y, z]).copied().unwrap_or(NONE);
                     while next != NONE {
-                        let other = self.staying[next as usize].as_dvec3();
+                        let (_, other) = self.staying[next as usize];
                         if (other - at).length_squared() <= self.tolerance * self.tolerance {
                             found = found.min(next);
                         }
@@ -110,14 +113,14 @@ impl Grid {
                 }
             }
         }
-        if let Some(&to) = self.staying.get(found as usize) {
+        if let Some(&(to, _)) = self.staying.get(found as usize) {
             return to;
         }
         let number = self.staying.len() as u32;
         let before = self.last.insert(self.cell(at), number);
         self.before.push(before.unwrap_or(NONE));
-        self.staying.push(p);
-        p
+        self.staying.push((v, at));
+        v
     }
 }
 
@@ -128,6 +131,8 @@ fn either(low: u64, high: u64) -> impl Iterator<Item = u64> {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
 
     /// Most positions that one look into a cell compares with.
@@ -150,8 +155,8 @@ mod tests {
     fn a_tiny_tolerance_compares_few_and_moves_nothing() {
         for tolerance in [f32::from_bits(1), 1e-30, 1e-12] {
             let mut grid = Grid::new(f64::from(tolerance));
-            for p in lattice() {
-                assert_eq!(grid.place(p), p);
+            for (v, p) in (0..).zip(lattice()) {
+                assert_eq!(grid.place(v, p.as_dvec3()), v);
             }
             assert_eq!(longest(&grid), 1, "{tolerance}");
             let mut mesh = Mesh {
@@ -167,10 +172,10 @@ mod tests {
     #[test]
     fn crowded_cells_are_noticed() {
         let mut grid = Grid::new(1e-30);
-        lattice().into_iter().for_each(|p| {
-            grid.place(p);
-        });
-        let cells = grid.staying.iter().map(|p| (p.as_dvec3() / 1.0).floor());
+        for (v, p) in (0..).zip(lattice()) {
+            grid.place(v, p.as_dvec3());
+        }
+        let cells = grid.staying.iter().map(|(_, p)| (p / 1.0).floor());
         let mut crowded = Grid::new(1e-30);
         for (number, cell) in (0..).zip(cells) {
             let before = crowded

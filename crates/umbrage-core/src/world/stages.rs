@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::half_edges::{Counts, group};
 use super::{BoxCluster, Bvh, Cluster, Edges, Planes, boxes, bvh, clusters, weld as welding};
 use crate::mesh::{Casting, Mesh};
+use crate::place::Places;
 
 /// Equal positions found.
 #[derive(Clone, Debug)]
@@ -36,6 +37,8 @@ pub struct Tree {
 pub struct Ordered {
     /// Distinct positions, numbered by first use.
     pub positions: Vec<Vec3>,
+    /// What f32 leaves of them; empty if the mesh has none.
+    pub residuals: Vec<Vec3>,
     /// Three vertices a triangle.
     pub triangles: Vec<[u32; 3]>,
     /// One rule a triangle.
@@ -58,7 +61,7 @@ pub struct Joined {
 
 /// Finds equal positions, and the triangles that have three distinct ones.
 pub fn weld(mesh: &Mesh) -> Welded {
-    let (vertex, count) = welding::weld(&mesh.positions);
+    let (vertex, count) = welding::weld(mesh.places());
     Welded {
         kept: kept(mesh, &vertex),
         vertex,
@@ -90,12 +93,17 @@ pub fn tree(mesh: &Mesh, welded: &Welded) -> Tree {
 /// known of single triangles.
 pub fn order(mesh: &Mesh, welded: &Welded, source: &[u32]) -> Ordered {
     let rule = |&t: &u32| mesh.casting[t as usize];
-    let (positions, triangles) = welding::renumber(mesh, welded, source);
+    let (positions, residuals, triangles) = welding::renumber(mesh, welded, source);
+    let places = Places {
+        positions: &positions,
+        residuals: &residuals,
+    };
     Ordered {
         casting: source.par_iter().map(rule).collect(),
-        planes: Planes::new(&positions, &triangles),
-        boxes: boxes::boxes(&positions, &triangles),
+        planes: Planes::new(places, &triangles),
+        boxes: boxes::boxes(places, &triangles),
         positions,
+        residuals,
         triangles,
     }
 }

@@ -222,7 +222,7 @@ impl World {
     }
 
     fn validate_welded(&self) -> Result<(), WorldFault> {
-        let key = |v: u32| self.positions[v as usize].to_array().map(f32::to_bits);
+        let key = |v: u32| self.places().at(v).to_array().map(f64::to_bits);
         let mut order: Vec<u32> = (0..self.positions.len() as u32).collect();
         order.sort_unstable_by_key(|&v| key(v));
         for pair in order.windows(2) {
@@ -244,10 +244,9 @@ impl World {
         }
         for (i, node) in nodes.iter().enumerate() {
             for triangle in node.range() {
-                let inside = self
-                    .corners(triangle)
-                    .iter()
-                    .all(|p| p.cmpge(node.min).all() && p.cmple(node.max).all());
+                let inside = self.corners(triangle).iter().all(|p| {
+                    p.cmpge(node.min.as_dvec3()).all() && p.cmple(node.max.as_dvec3()).all()
+                });
                 if !inside {
                     return Err(WorldFault::OutsideBox { triangle, node: i });
                 }

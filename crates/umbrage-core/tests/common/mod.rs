@@ -47,6 +47,7 @@ pub(crate) fn dense_soup(seed: u64, vertices: usize, triangles: usize) -> Mesh {
             .map(|_| [0; 3].map(|_| r.below(vertices) as u32))
             .collect(),
         casting: (0..triangles).map(|_| r.casting()).collect(),
+        ..Mesh::default()
     }
 }
 
@@ -106,9 +107,9 @@ pub(crate) fn torus(n: u32, rule: Casting) -> Mesh {
     mesh
 }
 
-pub(crate) fn point_light(position: Vec3, range: f32) -> Light {
+pub(crate) fn point_light(position: impl Into<DVec3>, range: f32) -> Light {
     Light {
-        position,
+        position: position.into(),
         range,
         shape: LightShape::Point,
     }
@@ -119,19 +120,24 @@ pub(crate) fn sun(direction: Vec3) -> Light {
         direction: direction.normalize(),
     };
     Light {
-        position: Vec3::ZERO,
+        position: DVec3::ZERO,
         range: f32::INFINITY,
         shape,
     }
 }
 
-pub(crate) fn spot(position: Vec3, direction: Vec3, cos_outer: f32, range: f32) -> Light {
+pub(crate) fn spot(
+    position: impl Into<DVec3>,
+    direction: Vec3,
+    cos_outer: f32,
+    range: f32,
+) -> Light {
     let shape = LightShape::Spot {
         direction: direction.normalize(),
         cos_outer,
     };
     Light {
-        position,
+        position: position.into(),
         range,
         shape,
     }
@@ -157,10 +163,10 @@ pub(crate) fn lights(r: &mut Random, count: usize) -> Vec<Light> {
     lights
 }
 
-pub(crate) type Corners = [[u32; 3]; 3];
+pub(crate) type Corners = [[u64; 3]; 3];
 
-pub(crate) fn bits(corners: [Vec3; 3]) -> Corners {
-    corners.map(|p| p.to_array().map(f32::to_bits))
+pub(crate) fn bits(corners: [DVec3; 3]) -> Corners {
+    corners.map(|p| p.to_array().map(f64::to_bits))
 }
 
 /// The chain of a light by where its triangles stand, whatever they are numbered.

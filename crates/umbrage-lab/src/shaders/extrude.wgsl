@@ -10,8 +10,7 @@ struct SkinnedCorner {
 
 // The first corner that has an entry in `skin`.
 @group(0) @binding(0) var<uniform> first_skinned: vec4u;
-// Position and 1, or direction towards the light and 0.
-@group(0) @binding(1) var<storage, read> lights: array<vec4f>;
+@group(0) @binding(1) var<storage, read> lights: array<UmbrageLight>;
 @group(0) @binding(2) var<storage, read> skin: array<SkinnedCorner>;
 // What each joint does to normals.
 @group(0) @binding(3) var<storage, read> joints: array<mat3x3f>;

@@ -1,6 +1,6 @@
 // One ray for each pixel and light that reaches it: does a caster cross the open segment between?
 //
-// A ray runs from the light, whose f32 position is exact, to the surface (from the surface to a
+// A ray runs from the light, whose position is exact, to the surface (from the surface to a
 // directional light). What decides is where light and surface lie relative to the caster's plane,
 // not a distance along the ray, so that there is no offset that grows where light grazes.
 
@@ -27,6 +27,8 @@ struct Light {
     range: f32,
     direction: vec3f,
     cos_outer: f32,
+    // What f32 leaves of the position.
+    residual: vec3f,
     // 0 point, 1 spot, 2 directional
     kind: u32,
     // Not drawn if the end is the first.
@@ -89,7 +91,7 @@ fn trace(
     let b = corners[3u * own + 1u].xyz;
     let c = corners[3u * own + 2u].xyz;
     let normal = cross(b - a, c - a);
-    let height = dot(normal, a - view.eye);
+    let height = dot(normal, (a - view.eye) - view.eye_residual);
     let ndc = vec2f(2.0, -2.0) * (vec2f(pixel.xy) + 0.5) / vec2f(size) + vec2f(-1.0, 1.0);
     let ahead = view.forward + view.right * (ndc.x / view.scale_x) + view.up * (ndc.y / view.scale_y);
     // From the eye to the surface, no farther and no nearer than the triangle is.
@@ -128,7 +130,7 @@ fn is_in_tile(number: u32, tile: vec2u) -> bool {
 
 // `height` is how far the eye is behind the surface's plane, times the length of `normal`.
 fn is_lit(light: Light, q: vec3f, own: u32, normal: vec3f, height: f32) -> bool {
-    let to_light = light.position - view.eye;
+    let to_light = (light.position - view.eye) + (light.residual - view.eye_residual);
     let v = q - to_light;
     var facing = -dot(normal, light.direction);
     var ray: Ray;
@@ -137,7 +139,7 @@ fn is_lit(light: Light, q: vec3f, own: u32, normal: vec3f, height: f32) -> bool 
     ray.is_far = light.kind == 2u;
     if ray.is_far {
         ray.base = view.eye;
-        ray.shift = q;
+        ray.shift = q + view.eye_residual;
         ray.direction = -light.direction;
         ray.end = 3e38;
     } else {
@@ -151,6 +153,7 @@ fn is_lit(light: Light, q: vec3f, own: u32, normal: vec3f, height: f32) -> bool 
         }
         facing = dot(normal, to_light) - height;
         ray.base = light.position;
+        ray.shift = light.residual;
         ray.direction = v;
         ray.end = 1.0 + 8.0 * ULP;
     }
@@ -175,7 +178,7 @@ fn is_lit(light: Light, q: vec3f, own: u32, normal: vec3f, height: f32) -> bool 
 
 fn is_blocked(ray: Ray) -> bool {
     // What `shift` rounds corners by.
-    let pad = 4.0 * ULP * select(0.0, ray.distance, ray.is_far);
+    let pad = 4.0 * ULP * select(length(ray.shift), ray.distance, ray.is_far);
     let count = arrayLength(&nodes);
     var at = 0u;
     while at < count {

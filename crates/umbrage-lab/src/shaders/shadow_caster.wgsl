@@ -8,6 +8,6 @@
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) face: u32)
     -> @builtin(position) vec4f
 {
-    let p = umbrage_position(umbrage_corner(3u * casters[index / 3u] + index % 3u));
+    let p = umbrage_place(umbrage_corner(3u * casters[index / 3u] + index % 3u)).rounded;
     return shadow_clip(map.faces[face], p - map.faces[face].origin);
 }

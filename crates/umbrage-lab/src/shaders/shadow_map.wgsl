@@ -18,7 +18,7 @@ fn cube_face(v: vec3f) -> u32 {
 
 fn visibility(light: u32, pixel: vec2f) -> f32 {
     let distance = textureLoad(distance_texture, vec2i(pixel), 0).x;
-    let q = surface_offset(pixel, distance) + (view.eye - map.faces[0].origin);
+    let q = surface_offset(pixel, distance) + ((view.eye - map.faces[0].origin) + view.eye_residual);
     var number = 0u;
     if map.count == 6u {
         number = cube_face(q);

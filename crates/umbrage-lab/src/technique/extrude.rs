@@ -205,9 +205,12 @@ impl Technique for Extrude {
         let Some(Buffers { skin: at_rest, .. }) = &self.buffers else {
             return Ok(());
         };
-        let mut lights: Vec<[f32; 4]> =
-            given.lights.iter().map(|l| l.light.homogeneous()).collect();
-        lights.resize(lights.len().max(1), [0.0; 4]);
+        let mut lights: Vec<[[f32; 4]; 2]> = given
+            .lights
+            .iter()
+            .map(|l| l.light.homogeneous_f32())
+            .collect();
+        lights.resize(lights.len().max(1), [[0.0; 4]; 2]);
         let lights = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("light positions"),
             contents: bytemuck::cast_slice(&lights),
@@ -327,7 +330,9 @@ impl Buffers {
             instances[instance].push(t);
         }
         for of in instances.iter().filter(|of| !of.is_empty()) {
-            let points = of.iter().flat_map(|&t| world.corners(t));
+            let points = of
+                .iter()
+                .flat_map(|&t| world.corners(t).map(glam::DVec3::as_vec3));
             let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
             let bounds = points.fold(empty, |[min, max], p| [min.min(p), max.max(p)]);
             add(of, Triangles::Fixed(bounds));
@@ -416,6 +421,7 @@ mod tests {
             positions: positions.map(Vec3::from).to_vec(),
             triangles: triangles.to_vec(),
             casting: vec![Casting::Front; triangles.len()],
+            ..Mesh::default()
         })
         .unwrap()
     }

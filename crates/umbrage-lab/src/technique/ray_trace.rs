@@ -50,9 +50,10 @@ struct RayLight {
     range: f32,
     direction: [f32; 3],
     cos_outer: f32,
+    residual: [f32; 3],
     kind: u32,
     rows: [u32; 2],
-    unused: u32,
+    unused: [u32; 2],
 }
 
 /// Rays for all lights.
@@ -267,8 +268,10 @@ fn ray_lights(given: &Given<'_>) -> Vec<RayLight> {
             LightShape::Directional { direction } => (2, direction, -1.0),
         };
         let scissor = plan.scissor;
+        let [position, residual] = light.position_f32();
         lights[number] = RayLight {
-            position: light.position.to_array(),
+            position: position.to_array(),
+            residual: residual.to_array(),
             range: light.range,
             direction: direction.to_array(),
             cos_outer,
@@ -277,7 +280,7 @@ fn ray_lights(given: &Given<'_>) -> Vec<RayLight> {
                 scissor.y / TILE,
                 (scissor.y + scissor.height).div_ceil(TILE),
             ],
-            unused: 0,
+            unused: [0; 2],
         };
     }
     lights

@@ -1,12 +1,12 @@
 //! A scene at a time.
 //!
 //! Takes a scene and seconds; gives where every node stands and what every joint does to the
-//! vertices bound to it, composed in f64. Positions are blended in f64 and rounded once, relative
-//! to an origin: those f32 positions are the geometry for whoever draws, casts or judges.
+//! vertices bound to it, composed in f64. Positions are blended in f64; whoever keeps them rounds them
+//! once, and what is kept is the geometry for whoever draws, casts or judges.
 //! Source: glTF 2.0 specification, section 3.7.3.3: a joint matrix is the joint's world transform
 //! times its inverse bind matrix, and the transform of the skinned mesh's own node is ignored.
 
-use glam::{DAffine3, DMat3, DVec3, DVec4, Vec3};
+use glam::{DAffine3, DMat3, DVec3, DVec4};
 
 use super::{Local, Part, Rig};
 use crate::{Camera, Instance, Light, Mesh, Scene};
@@ -56,10 +56,11 @@ impl Posed {
         instance: &Instance,
         mesh: &Mesh,
         origin: DVec3,
-        positions: &mut Vec<Vec3>,
+        positions: &mut Vec<DVec3>,
     ) {
         positions.clear();
-        self.placing(instance, mesh).place(mesh, origin, positions);
+        let placing = self.placing(instance, mesh);
+        placing.place(mesh, origin, |p| positions.push(p));
     }
 }
 
@@ -102,20 +103,20 @@ impl Placing<'_> {
         (inside_out + upright > 0).then_some(inside_out > upright)
     }
 
-    /// Appends the positions of a mesh, rounded once.
-    pub(crate) fn place(&self, mesh: &Mesh, origin: DVec3, to: &mut Vec<Vec3>) {
-        let from = &mesh.positions;
-        let placed = |transform: &DAffine3, p: &Vec3| {
-            (transform.transform_point3(p.as_dvec3()) - origin).as_vec3()
-        };
+    /// Hands over the places of a mesh's vertices, in order, relative to `origin`.
+    pub(crate) fn place(&self, mesh: &Mesh, origin: DVec3, mut to: impl FnMut(DVec3)) {
+        let from = mesh.positions.iter().map(|p| p.as_dvec3());
         match self {
             Self::Rigid(t) if *t == DAffine3::IDENTITY && origin == DVec3::ZERO => {
-                to.extend_from_slice(from); // keeps the sign of zero too
+                from.for_each(to); // keeps the sign of zero too
             }
-            Self::Rigid(transform) => to.extend(from.iter().map(|p| placed(transform, p))),
+            Self::Rigid(transform) => {
+                from.for_each(|p| to(transform.transform_point3(p) - origin));
+            }
             Self::Skinned(_) => {
-                let vertices = from.iter().enumerate();
-                to.extend(vertices.map(|(v, p)| placed(&self.of_vertex(mesh, v), p)));
+                for (v, p) in from.enumerate() {
+                    to(self.of_vertex(mesh, v).transform_point3(p) - origin);
+                }
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Checks a hierarchy against the triangles it was built from.
 
-use glam::Vec3;
+use glam::DVec3;
 
 use super::{Box3, Bvh};
 
@@ -17,7 +17,7 @@ pub(crate) enum Invalid {
 
 impl Bvh {
     /// Whether every slot lies in exactly one leaf, and in the box of each of its ancestors.
-    pub(crate) fn validate(&self, corners: &[[Vec3; 3]], order: &[u32]) -> Result<(), Invalid> {
+    pub(crate) fn validate(&self, corners: &[[DVec3; 3]], order: &[u32]) -> Result<(), Invalid> {
         let mut leaves = vec![0; order.len()];
         let mut times = vec![0; self.nodes.len()];
         let mut open = Vec::new();
@@ -45,7 +45,7 @@ impl Bvh {
                     let Box3 { min, max } = self.nodes[ancestor].bounds;
                     let inside = corners[order[slot] as usize]
                         .iter()
-                        .all(|c| c.cmpge(min).all() && c.cmple(max).all());
+                        .all(|c| c.cmpge(min.as_dvec3()).all() && c.cmple(max.as_dvec3()).all());
                     if !inside {
                         return Err(Invalid::Outside {
                             slot,
@@ -75,9 +75,9 @@ impl Bvh {
 mod tests {
     use super::*;
 
-    fn strip(count: u32) -> (Vec<[Vec3; 3]>, Vec<u32>) {
+    fn strip(count: u32) -> (Vec<[DVec3; 3]>, Vec<u32>) {
         let corners = (0..count)
-            .map(|k| [0.0, 1.0, 2.5].map(|x| Vec3::new(k as f32 + x, x * x, (k % 7) as f32)))
+            .map(|k| [0.0, 1.0, 2.5].map(|x| DVec3::new(f64::from(k) + x, x * x, f64::from(k % 7))))
             .collect();
         (corners, (0..count).collect())
     }

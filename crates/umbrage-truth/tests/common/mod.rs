@@ -75,7 +75,7 @@ pub(crate) fn closed_box(mesh: &mut Mesh, min: Vec3, max: Vec3, casting: Casting
 
 pub(crate) fn point_light(position: Vec3, range: f32) -> Light {
     Light {
-        position,
+        position: position.into(),
         range,
         shape: LightShape::Point,
     }
@@ -83,7 +83,7 @@ pub(crate) fn point_light(position: Vec3, range: f32) -> Light {
 
 pub(crate) fn sun(direction: Vec3) -> Light {
     Light {
-        position: Vec3::ZERO,
+        position: glam::DVec3::ZERO,
         range: 0.0,
         shape: LightShape::Directional { direction },
     }

@@ -11,6 +11,10 @@ struct View {
     forward: vec3f,
     width: f32,
     height: f32,
+    // Of a vertex of the world: see world.wgsl.
+    vertex_floats: u32,
+    // What f32 leaves of the eye.
+    eye_residual: vec3f,
 }
 
 // Clip position of a world point (w = 1) at q = point - eye, or of the point at infinity (w = 0)

@@ -15,7 +15,7 @@
 @group(0) @binding(6) var<storage, read_write> spans: array<u32>;
 
 struct LightPlan {
-    homogeneous: vec4f,
+    homogeneous: UmbrageLight,
     // Of a spot's cone; a cosine of -1 for all directions.
     axis: vec3f,
     cos_outer: f32,
@@ -172,7 +172,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 
 // The visible surface that may lie in the light's range, in every 64th row of tiles; and for each
 // of these rows the span of tiles that has any.
-fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box {
+fn in_range(number: u32, ours: LightPlan, homogeneous: UmbrageLight, lane: u32) -> Box {
     let across = (textureDimensions(depth_texture) + TILE - 1u) / TILE;
     let center = umbrage_light_from_eye(homogeneous);
     // Far above the rounding of the distance, and below what a tile's box adds to it.
@@ -184,7 +184,7 @@ fn in_range(number: u32, ours: LightPlan, homogeneous: vec4f, lane: u32) -> Box 
         var end = ours.tiles.x;
         for (var x = ours.tiles.x; x < ours.tiles.z; x++) {
             var box = tiles[y * across.x + x];
-            if box.some != 0u && homogeneous.w != 0.0 {
+            if box.some != 0u && homogeneous.rounded.w != 0.0 {
                 let aside = max(max(box.low - center, center - box.high), vec3f(0.0));
                 let reached = dot(aside, aside) <= range * range && meets_cone(ours, center, box);
                 box.some = select(0u, 1u, reached);
@@ -234,7 +234,7 @@ fn over_hull(normal: vec3f, foot: vec3f, box: Box) -> vec2f {
 
 // False only if a plane separates the quad from the hull of the eye and the box. Tried are the
 // planes of the box, the quad's own plane, and the three planes upright on it through its edges.
-fn meets_hull(quad: u32, light: vec4f, box: Box) -> bool {
+fn meets_hull(quad: u32, light: UmbrageLight, box: Box) -> bool {
     let ends = umbrage_edge(quad >> 1u);
     let a = umbrage_from_eye(ends.x);
     let b = umbrage_from_eye(ends.y);

@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var<storage, read> quads: array<u32>;
 @group(0) @binding(1) var<storage, read> caps: array<u32>;
-@group(0) @binding(2) var<storage, read> lights: array<vec4f>;
+@group(0) @binding(2) var<storage, read> lights: array<UmbrageLight>;
 // To which vertices are moved, measured from the light; 0 is infinity. Filled if UMBRAGE_FINITE.
 @group(0) @binding(3) var<storage, read> distances: array<f32>;
 
@@ -19,7 +19,7 @@ const RECEDE: f32 = 1.0 - 1.0 / 2097152.0;
 
 // The vertex relative to the eye, or moved away from the light to its distance; one that is
 // farther away stays.
-fn moved(vertex: u32, light: vec4f, distance: f32) -> vec3f {
+fn moved(vertex: u32, light: UmbrageLight, distance: f32) -> vec3f {
     let away = umbrage_from_light(vertex, light);
     // Scaled, so that no square overflows or vanishes.
     let scale = max(max(abs(away.x), abs(away.y)), abs(away.z));
@@ -91,7 +91,7 @@ fn zfail_side(@builtin(vertex_index) index: u32, @builtin(instance_index) light:
 }
 
 // Whether the eye is on the side that the edge casts, not just in its plane.
-fn eye_on_side(ends: vec2u, light: vec4f) -> bool {
+fn eye_on_side(ends: vec2u, light: UmbrageLight) -> bool {
     let qa = umbrage_from_eye(ends.x);
     let qb = umbrage_from_eye(ends.y);
     let edge = umbrage_between(ends.x, ends.y);

@@ -7,10 +7,33 @@
 @group(UMBRAGE_WORLD_GROUP) @binding(2) var<storage, read> umbrage_edges: array<vec2u>;
 @group(UMBRAGE_WORLD_GROUP) @binding(3) var<storage, read> umbrage_triangles: array<u32>;
 
-// Where a vertex is in the world.
-fn umbrage_position(vertex: u32) -> vec3f {
-    let i = 3u * vertex;
-    return vec3f(umbrage_positions[i], umbrage_positions[i + 1u], umbrage_positions[i + 2u]);
+// Where something is: rounded to f32, and what that leaves. Two such places are subtracted part by
+// part: where they are near each other, nothing is lost.
+struct UmbragePlace {
+    rounded: vec3f,
+    residual: vec3f,
+}
+
+// A homogeneous light: position and 1, or the direction towards the light and 0; and what f32 leaves
+// of it.
+struct UmbrageLight {
+    rounded: vec4f,
+    residual: vec4f,
+}
+
+fn umbrage_floats(first: u32) -> vec3f {
+    return vec3f(
+        umbrage_positions[first], umbrage_positions[first + 1u], umbrage_positions[first + 2u]);
+}
+
+// Where a vertex is in the world. It has six floats where f32 does not hold the world, else three.
+fn umbrage_place(vertex: u32) -> UmbragePlace {
+    let floats = umbrage_world_view.vertex_floats;
+    let first = floats * vertex;
+    if floats == 3u {
+        return UmbragePlace(umbrage_floats(first), vec3f(0.0));
+    }
+    return UmbragePlace(umbrage_floats(first), umbrage_floats(first + 3u));
 }
 
 // The two vertices of an edge.
@@ -25,21 +48,26 @@ fn umbrage_corner(corner: u32) -> u32 {
 
 // From one vertex to another.
 fn umbrage_between(start: u32, end: u32) -> vec3f {
-    return umbrage_position(end) - umbrage_position(start);
+    let a = umbrage_place(start);
+    let b = umbrage_place(end);
+    return (b.rounded - a.rounded) + (b.residual - a.residual);
 }
 
 // From the eye to a vertex.
 fn umbrage_from_eye(vertex: u32) -> vec3f {
-    return umbrage_position(vertex) - umbrage_world_view.eye;
+    let p = umbrage_place(vertex);
+    return (p.rounded - umbrage_world_view.eye) + (p.residual - umbrage_world_view.eye_residual);
 }
 
-// From a light to a vertex, as homogeneous lights have it: position and 1, or the direction towards
-// the light and 0.
-fn umbrage_from_light(vertex: u32, light: vec4f) -> vec3f {
-    return umbrage_position(vertex) * light.w - light.xyz;
+// From a light to a vertex.
+fn umbrage_from_light(vertex: u32, light: UmbrageLight) -> vec3f {
+    let p = umbrage_place(vertex);
+    let w = light.rounded.w;
+    return (p.rounded * w - light.rounded.xyz) + (p.residual * w - light.residual.xyz);
 }
 
 // From the eye to a light that has a position.
-fn umbrage_light_from_eye(light: vec4f) -> vec3f {
-    return light.xyz - umbrage_world_view.eye;
+fn umbrage_light_from_eye(light: UmbrageLight) -> vec3f {
+    return (light.rounded.xyz - umbrage_world_view.eye)
+        + (light.residual.xyz - umbrage_world_view.eye_residual);
 }

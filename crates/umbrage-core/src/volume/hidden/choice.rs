@@ -94,7 +94,7 @@ impl Choice {
                 let slot = &mut self.slots[u.edge() as usize];
                 if *slot == 0 {
                     let ends = world.edges.vertices[u.edge() as usize];
-                    let range = reach.of_edge(ends.map(|v| world.positions[v as usize]));
+                    let range = reach.of_edge(ends.map(|v| world.places().at(v)));
                     self.edges.push(HiddenEdge {
                         edge: u.edge(),
                         cost: COST[usize::from(range != QuadRange::Reach)],

@@ -52,7 +52,7 @@ impl Sight {
     pub(super) fn new(world: &World, light: &Light) -> Self {
         let LightShape::Directional { direction } = light.shape else {
             return Self {
-                shape: Shape::Point(light.position.as_dvec3()),
+                shape: Shape::Point(light.position),
                 nearer: 1e-9,
             };
         };
@@ -71,7 +71,7 @@ impl Sight {
     /// Triangle `t`.
     pub(super) fn caster(&self, world: &World, t: u32) -> Caster {
         let mut vertices = world.triangles[t as usize];
-        let position = |v: u32| world.positions[v as usize].as_dvec3();
+        let position = |v: u32| world.places().at(v);
         let seen = |v: u32| match self.shape {
             Shape::Point(light) => (position(v) - light, 1.0),
             Shape::Parallel([u, v_axis, along], _) => {

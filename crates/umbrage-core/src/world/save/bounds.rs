@@ -16,6 +16,7 @@ pub(super) fn check(world: &World, mesh_triangles: u64) -> Result<(), SavedWorld
     let positions = world.positions.len() as u32;
     let edges = world.edges.vertices.len() as u32;
     each(Section::Positions, &world.positions, |_, p| p.is_finite())?;
+    each(Section::Residuals, &world.residuals, |_, p| p.is_finite())?;
     each(Section::Triangles, &world.triangles, |_, t| {
         (t[0] < positions) & (t[1] < positions) & (t[2] < positions)
     })?;
@@ -48,9 +49,14 @@ fn lengths(world: &World) -> Result<(), SavedWorldError> {
     let triangles = world.triangles.len();
     let clusters = triangles.div_ceil(LANES);
     let limit = World::MAX_TRIANGLES;
+    let residuals = world.residuals.len();
+    if residuals > 0 && residuals < world.positions.len() {
+        return Err(invalid(Section::Residuals, residuals));
+    }
     for (section, found, allowed) in [
         (Section::Triangles, triangles, 0..=limit),
         (Section::Positions, world.positions.len(), 0..=3 * limit),
+        (Section::Residuals, residuals, 0..=world.positions.len()),
         (Section::Source, world.source.len(), triangles..=triangles),
         (Section::Casting, world.casting.len(), triangles..=triangles),
         (

@@ -10,7 +10,7 @@ use super::super::{BuildTimes, WorldReport};
 use crate::fingerprint::{Fingerprint, checksum};
 
 pub(super) const MAGIC: [u8; 8] = *b"umbrageW";
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 pub(super) const BYTE_ORDER: u32 = 0x0102_0304;
 /// Of arrays in the file: a cache line, which the widest element type asks for.
 pub(super) const ALIGNMENT: usize = 64;
@@ -19,6 +19,7 @@ pub(super) const ALIGNMENT: usize = 64;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Section {
     Positions,
+    Residuals,
     Triangles,
     Source,
     Casting,
@@ -31,8 +32,9 @@ pub(super) enum Section {
 }
 
 impl Section {
-    pub(super) const ALL: [Self; 10] = [
+    pub(super) const ALL: [Self; 11] = [
         Self::Positions,
+        Self::Residuals,
         Self::Triangles,
         Self::Source,
         Self::Casting,
@@ -47,6 +49,7 @@ impl Section {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Positions => "positions",
+            Self::Residuals => "residuals",
             Self::Triangles => "triangles",
             Self::Source => "source",
             Self::Casting => "casting",

@@ -42,7 +42,7 @@ pub(super) fn casters(world: &World, lights: &[(&Light, &[Face])]) -> Vec<Caster
             found.triangles.extend(
                 casting
                     .map(ChainTriangle::triangle)
-                    .filter(|&t| face.meets(world.corners(t))),
+                    .filter(|&t| face.meets(world.corners(t).map(glam::DVec3::as_vec3))),
             );
             found.faces.push(first..found.triangles.len() as u32);
         }

@@ -51,7 +51,7 @@ pub(super) fn faces(light: &Light, texels: u32, view: &View, bounds: [Vec3; 2]) 
         scale_y: shown / tan,
         forward,
         near: (NEAR * light.range).min(FARTHEST_NEAR),
-        origin: light.position,
+        origin: light.position.as_vec3(),
         length: 0.0,
     };
     match light.shape {
@@ -139,7 +139,7 @@ fn side_normals(view: &View) -> [Vec3; 4] {
 fn seen_of_box(view: &View, [min, max]: [Vec3; 2]) -> Vec<DVec3> {
     let size = f64::from((max - min).max_element());
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-    let eye = view.eye.as_dvec3();
+    let eye = view.eye;
     // Points inside have n.p >= d.
     let mut planes: Vec<(DVec3, f64)> = Vec::new();
     for (i, axis) in axes.into_iter().enumerate() {
@@ -176,7 +176,7 @@ impl Face {
         }
         let (x, y) = (self.right / self.scale_x, self.up / self.scale_y);
         let ends = [x + y, x - y, y - x, -x - y].map(|aside| (self.forward + aside) * range);
-        let apex = self.origin - view.eye;
+        let apex = self.origin - view.eye.as_vec3();
         let slack = 1e-4 * range;
         side_normals(view)
             .into_iter()

@@ -45,7 +45,7 @@ fn scratch_maps_draw_what_kept_maps_do() {
         }
     }
     let camera = &stage.scene.cameras[0];
-    let (eye, ahead) = (stage.local(camera.position), camera.forward.as_vec3());
+    let (eye, ahead) = (stage.local(camera.position), camera.forward);
     let view = View::look_at(eye, eye + ahead, 1.2, 0.1, [160, 90]);
     let site = (&stage, &lights[..], &view);
     let gpu = Gpu::open(&AdapterChoice::Auto);
