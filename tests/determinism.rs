@@ -3,12 +3,16 @@
 
 mod common;
 
-use common::{Site, check, plain};
-use umbrage_core::Light;
-use umbrage_core::volume::{VolumeBuilder, Volumes};
-use umbrage_core::world::{BuildTimes, World};
+use common::{EXACT, Site, by_profile, check, lab, plain};
+use glam::{DVec3, Vec3, dvec3};
+use umbrage_core::frame::{FramePlan, LightPlan, PathRule, PlanOptions};
+use umbrage_core::volume::{Chain, ChainTriangle, LayerLimit, Part, Quad, VolumeBuilder, Volumes};
+use umbrage_core::world::{BuildTimes, Pose, World};
+use umbrage_core::{Light, View};
 use umbrage_lab::lab::Method;
 use umbrage_lab::stage::Casters;
+use umbrage_scene::rig::Placement;
+use umbrage_truth::Mask;
 
 fn city() -> Site {
     Site::open(
@@ -100,4 +104,183 @@ fn two_runs_draw_the_same_mask() {
     assert_eq!(first.plan.lights, second.plan.lights);
     assert_eq!(first.judgement, second.judgement);
     assert!(first.judgement.samples > 0);
+}
+
+/// The pools that must agree.
+const THREADS: [usize; 4] = [1, 2, 3, 8];
+
+/// Few enough that many lights are in parts.
+const FEW: LayerLimit = LayerLimit { whole: 3, part: 2 };
+
+/// All that builds and plans give, but for times and stamps.
+#[derive(Debug, PartialEq)]
+struct Outcome {
+    lights: Vec<(u32, u32, u32, Vec<Part>)>,
+    quads: Vec<Quad>,
+    chains: Vec<Chain>,
+    plans: Vec<(Vec<LightPlan>, Vec<ChainTriangle>)>,
+}
+
+impl Outcome {
+    fn new(world: &World, lights: &[Light], view: &View, volumes: &Volumes) -> Self {
+        let plan = |path| {
+            let (mut plan, mut options) = (FramePlan::default(), PlanOptions::default());
+            options.path = path;
+            plan.make(world, lights, volumes, view, &options);
+            (plan.lights, plan.caps)
+        };
+        let light = |i: usize| {
+            let light = &volumes.lights[i];
+            let counts = [
+                light.subset_triangles,
+                light.facing_triangles,
+                light.layers_bound,
+            ];
+            (counts[0], counts[1], counts[2], light.parts.clone())
+        };
+        Self {
+            lights: (0..lights.len()).map(light).collect(),
+            quads: volumes.quads.clone(),
+            chains: volumes.chains.clone(),
+            plans: [PathRule::ZPassWhereExact, PathRule::ZFailAlways]
+                .map(plan)
+                .into(),
+        }
+    }
+}
+
+/// A city in which a crate moves, frame after frame: first without looking for hidden casters, in
+/// the end with.
+fn play(site: &Site, frames: usize) -> Vec<Outcome> {
+    let mut world = World::build(&site.stage.mesh).expect("the mesh is valid");
+    let lights = plain(&site.lights);
+    let view = site.first_camera([200, 150]);
+    let at = lights[1].position;
+    let moving = common::room::crate_of(Vec3::splat(0.7));
+    let id = world.insert(&moving, &Pose::at(at)).expect("a crate");
+    let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
+    builder.layers = FEW;
+    let mut outcomes = Vec::new();
+    for frame in 0..frames {
+        let by = DVec3::new(0.4, -0.3, 0.2) * frame as f64;
+        world.pose(id, &Pose::at(at + by)).expect("it is there");
+        builder.build(&world, &lights, |_| true, &mut volumes);
+        outcomes.push(Outcome::new(&world, &lights, &view, &volumes));
+    }
+    builder.settle(&world, &lights, |_| true, &mut volumes);
+    outcomes.push(Outcome::new(&world, &lights, &view, &volumes));
+    outcomes
+}
+
+#[test]
+fn threads_change_no_frame_of_a_moving_world() {
+    let site = city();
+    let played = THREADS.map(|count| with_threads(count, || play(&site, 2)));
+    for other in &played[1..] {
+        assert!(*other == played[0]);
+    }
+    let parts = |outcome: &Outcome| outcome.lights.iter().any(|light| light.3.len() > 1);
+    assert!(played[0].iter().all(parts));
+    // The comparison sees what it is to see: frames differ, and so does one with two quads swapped.
+    let [first, second, ..] = &played[0][..] else {
+        panic!("two frames")
+    };
+    assert!(first != second);
+    let mut swapped = with_threads(2, || play(&site, 1)).swap_remove(0);
+    assert!(swapped == *first);
+    let other = (1..).find(|&i| swapped.quads[i] != swapped.quads[0]);
+    swapped.quads.swap(0, other.expect("quads differ"));
+    assert!(swapped != *first);
+}
+
+#[test]
+fn threads_change_no_saved_world() {
+    let site = city();
+    let mesh = &site.stage.mesh;
+    let saved = |count: usize| {
+        let name = format!("umbrage-threads-{count}-{}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        let bytes = with_threads(count, || {
+            let mut world = World::build(mesh).expect("the mesh is valid");
+            // What it cost is saved too.
+            world.report.build_ms = BuildTimes::default();
+            world
+                .save(&path, mesh.fingerprint())
+                .expect("it can be saved");
+            let opened = World::open(&path, mesh.fingerprint()).expect("it can be opened");
+            (
+                std::fs::read(&path).expect("a file"),
+                volumes(&opened, &plain(&site.lights)),
+            )
+        });
+        std::fs::remove_file(&path).expect("it was there");
+        (bytes.0, bytes.1.quads, bytes.1.chains)
+    };
+    let [first, others @ ..] = THREADS.map(saved);
+    assert!(first.0.len() > 100_000);
+    for other in others {
+        assert!(first == other);
+    }
+}
+
+/// Masks on both paths, of whole lights and of parts, with as many threads.
+fn masks(site: &Site, view: &View, threads: usize) -> Vec<Mask> {
+    let of = |(method, layers): (Method, LayerLimit)| {
+        with_threads(threads, || {
+            let mut lab = lab();
+            lab.layers = layers;
+            lab.volumes = Volumes::default();
+            lab.prepare(&site.stage, &site.lights, view, method);
+            let mask = lab.mask(&site.stage, &site.lights, view);
+            (lab.layers, lab.volumes) = (LayerLimit::STENCIL, Volumes::default());
+            mask.expect("a mask")
+        })
+    };
+    let layers = [LayerLimit::STENCIL, FEW];
+    let all = EXACT.into_iter().flat_map(|m| layers.map(|l| (m, l)));
+    all.map(of).collect()
+}
+
+#[test]
+fn threads_change_no_mask() {
+    let site = city();
+    let view = site.first_camera([200, 150]);
+    let drawn = THREADS.map(|count| masks(&site, &view, count));
+    assert!(drawn.iter().all(|masks| *masks == drawn[0]));
+    let aside = View {
+        eye: view.eye + 0.5 * view.right.as_dvec3(),
+        ..view
+    };
+    assert!(masks(&site, &aside, 2) != drawn[0]);
+}
+
+/// A man who walks through stormkeep is posed, built and drawn alike.
+#[test]
+fn threads_change_no_step_of_an_actor() {
+    let data = |file: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("data")
+            .join(file);
+        umbrage_scene::load(&path, &()).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let walked = |threads: usize| {
+        let site = with_threads(threads, || {
+            let mut scene = data("worlds/stormkeep.glb");
+            let placement = Placement {
+                at: dvec3(-970.0, -40.0, -1312.0),
+                turn_rad: std::f64::consts::FRAC_PI_2,
+                scale: 40.0,
+                speed: 40.0,
+            };
+            scene.place(data("actors/cesium_man.glb"), &placement);
+            let mut site = Site::new(scene, Casters::Material);
+            site.stage.set_time(0.62).expect("he can walk");
+            site
+        });
+        let [eye, target] = [[-840.0, 10.0, -1440.0], [-950.0, -12.0, -1312.0]].map(Vec3::from);
+        let view = site.look(eye, target, by_profile([160, 90], [80, 45]));
+        masks(&site, &view, threads)
+    };
+    let [first, others @ ..] = [1, 3].map(walked);
+    assert!(others.into_iter().all(|masks| masks == first));
 }

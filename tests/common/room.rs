@@ -71,7 +71,7 @@ pub(crate) fn scene() -> Scene {
     scene_of("room", mesh)
 }
 
-fn triangle(mesh: &mut Mesh, corners: [Vec3; 3], material: u32) {
+pub(crate) fn triangle(mesh: &mut Mesh, corners: [Vec3; 3], material: u32) {
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(corners);
     mesh.triangles.push([first, first + 1, first + 2]);

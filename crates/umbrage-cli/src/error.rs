@@ -17,7 +17,7 @@ pub(crate) enum CliError {
     /// A scene, light file, option value or output path that cannot be used.
     #[error("{0}")]
     BadInput(String),
-    /// No adapter that satisfies `--adapter`.
+    /// No adapter that satisfies `--adapter`, or one whose device was lost.
     #[error("{0}")]
     NoAdapter(String),
     /// The verb did its work, and what it checks does not hold.
@@ -52,9 +52,13 @@ impl From<StageError> for CliError {
         let remedy = match &error {
             // What is no world may be dear to someone, and what the system says is no fault of it.
             StageError::SavedWorld {
-                error: SavedWorldError::NotASavedWorld | SavedWorldError::Io(_),
+                error: SavedWorldError::NotASavedWorld,
                 ..
             } => "",
+            StageError::SavedWorld {
+                error: SavedWorldError::Io(_),
+                ..
+            } => "; is the folder there and writable?",
             StageError::SavedWorld { .. } => ": delete the file, or name another with --world",
             _ => "",
         };
@@ -65,7 +69,9 @@ impl From<StageError> for CliError {
 impl From<GpuError> for CliError {
     fn from(error: GpuError) -> Self {
         match error {
-            GpuError::NoAdapter { .. } => CliError::NoAdapter(error.to_string()),
+            GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } | GpuError::DeviceLost(_) => {
+                CliError::NoAdapter(error.to_string())
+            }
             _ => CliError::BadInput(error.to_string()),
         }
     }
@@ -104,6 +110,13 @@ mod tests {
         assert_eq!(CliError::CheckFailed(String::new()).exit_code(), 1);
         assert_eq!(CliError::BadInput(String::new()).exit_code(), 2);
         assert_eq!(CliError::NoAdapter(String::new()).exit_code(), 3);
+    }
+
+    #[test]
+    fn a_lost_device_is_no_usable_adapter() {
+        let error = CliError::from(GpuError::DeviceLost("hung".into()));
+        assert_eq!(error.exit_code(), 3);
+        assert!(error.to_string().contains("--adapter"), "{error}");
     }
 
     #[test]

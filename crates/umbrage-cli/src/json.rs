@@ -18,8 +18,12 @@ pub(crate) fn write(path: &Path, value: &impl Serialize) -> Result<(), CliError>
         print(&text);
         return Ok(());
     }
-    whole(path, |file| file.write_all(text.as_bytes()))
-        .map_err(|error| CliError::file(path, format!("cannot be written: {error}")))
+    whole(path, |file| file.write_all(text.as_bytes())).map_err(|error| {
+        CliError::file(
+            path,
+            format!("cannot be written: {error}; is the folder there and writable?"),
+        )
+    })
 }
 
 /// Whether `path` stands for standard output.

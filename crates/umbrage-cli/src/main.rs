@@ -1,14 +1,14 @@
 //! The `umbrage` command line: `umbrage <verb> SCENE [options]`.
 //!
 //! Takes arguments, gives an exit code: 0 success, 1 a check failed, 2 bad input or usage,
-//! 3 no usable adapter. Each verb has its file in `verbs/`.
+//! 3 no usable adapter, or its device
+//! was lost. Each verb has its file in `verbs/`.
 #![forbid(unsafe_code)]
 
 mod actor;
 mod args;
 mod error;
 mod json;
-mod light_file;
 mod progress;
 mod report;
 mod setting;
@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Verb::Check(args) => verbs::check::run(&args),
         Verb::Volumes(args) => verbs::volumes::run(&args),
         Verb::Bench(args) => verbs::bench::run(&args),
+        Verb::Stress(args) => verbs::stress::run(&args),
         Verb::Gen(args) => verbs::generate::run(&args),
     };
     match done {

@@ -45,6 +45,8 @@ pub(crate) struct RenderTotals {
     pub(crate) lights_rebuilt: u64,
     pub(crate) lights_cached: u64,
     pub(crate) lights_skipped: u64,
+    /// Of those not skipped, lights drawn in parts: they may have more layers than the stencil holds.
+    pub(crate) lights_split: u64,
 }
 
 /// How a light was drawn.
@@ -72,6 +74,10 @@ pub(crate) struct LightReport {
     /// Of these, what the last frame drew.
     pub(crate) quads_drawn: u64,
     pub(crate) cap_triangles: u64,
+    /// No point is behind more of its casters; 0 if it was not built.
+    pub(crate) layers_bound: u64,
+    /// In which its volume is counted: 1, unless that is more than the stencil holds.
+    pub(crate) parts: u64,
     pub(crate) path: PathTaken,
     /// Why this path; empty for the default one.
     pub(crate) reason: String,
@@ -98,6 +104,7 @@ impl RenderTotals {
             totals.lights_skipped += u64::from(skipped);
             totals.lights_cached += u64::from(!skipped && light.cached);
             totals.lights_rebuilt += u64::from(!skipped && !light.cached);
+            totals.lights_split += u64::from(!skipped && light.parts > 1);
         }
         totals.polygons = totals.quads_drawn + totals.cap_triangles;
         totals
@@ -187,6 +194,10 @@ pub(crate) struct CheckReport {
     pub(crate) closed: bool,
     pub(crate) worst: Vec<WorstPixel>,
     pub(crate) lights_by_path: LightsByPath,
+    /// Of those not skipped, lights drawn in parts.
+    pub(crate) lights_split: u64,
+    /// Of every light.
+    pub(crate) layers: Vec<LightLayers>,
     /// What a reader of the method's figures must know; empty if nothing.
     pub(crate) note: String,
 }
@@ -198,6 +209,14 @@ pub(crate) struct WorstPixel {
     pub(crate) y: u32,
     /// Name of the light.
     pub(crate) light: String,
+}
+
+/// A light's layers; see [`LightReport`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct LightLayers {
+    pub(crate) name: String,
+    pub(crate) layers_bound: u64,
+    pub(crate) parts: u64,
 }
 
 /// Lights by how they were drawn.
@@ -260,6 +279,81 @@ pub(crate) struct VolumesMethod {
     pub(crate) adjacency_bytes_per_triangle: f64,
 }
 
+/// `stress`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressReport {
+    pub(crate) cases: u64,
+    /// Of these, drawn.
+    pub(crate) rendered: u64,
+    /// Counts at points and pixel-lights.
+    pub(crate) samples: u64,
+    pub(crate) wrong: u64,
+    pub(crate) ambiguous: u64,
+    /// Whether every volume is closed, counted in integers.
+    pub(crate) closed: bool,
+    /// Volumes that are not.
+    pub(crate) not_closed: u64,
+    /// Points for which no ray could be counted; no samples.
+    pub(crate) uncounted: u64,
+    pub(crate) point_samples: u64,
+    pub(crate) pixel_samples: u64,
+    pub(crate) seed: u64,
+    /// Of a point, as a share of its distance from the light.
+    pub(crate) tolerance: f64,
+    /// Of pixel-lights, as for check.
+    pub(crate) tolerance_px: f64,
+    pub(crate) tolerance_depth: f64,
+    /// Of the pictures.
+    pub(crate) size: [u32; 2],
+    /// Null where nothing was to be drawn.
+    pub(crate) adapter: Option<String>,
+    /// Whether --time ran out.
+    pub(crate) ended_early: bool,
+    pub(crate) families: Vec<StressFamily>,
+    /// Lights left out of masks, by placement.
+    pub(crate) not_drawn: Vec<StressNotDrawn>,
+    pub(crate) failures: Vec<StressFailure>,
+}
+
+/// Counts of one family.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressFamily {
+    pub(crate) name: &'static str,
+    pub(crate) about: &'static str,
+    pub(crate) cases: u64,
+    pub(crate) rendered: u64,
+    pub(crate) samples: u64,
+    pub(crate) wrong: u64,
+    pub(crate) ambiguous: u64,
+    pub(crate) closed: bool,
+    pub(crate) not_closed: u64,
+}
+
+/// A placement that masks cannot show.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressNotDrawn {
+    pub(crate) name: &'static str,
+    pub(crate) reason: &'static str,
+    /// Left out of a mask.
+    pub(crate) lights: u64,
+}
+
+/// A case that failed.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressFailure {
+    /// Its name.
+    pub(crate) case: String,
+    pub(crate) fault: String,
+    /// The command line that tries it again.
+    pub(crate) again: String,
+    /// Of the smaller case; null where none was written.
+    pub(crate) file: Option<String>,
+    /// Of the smaller case.
+    pub(crate) triangles: Option<u64>,
+    /// The command line that shows the failure of the file; null where its masks are right.
+    pub(crate) check: Option<String>,
+}
+
 /// `gen`.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct GenReport {
@@ -294,12 +388,12 @@ mod tests {
         has(
             keys(&RenderTotals::default()),
             "subset_triangles facing_triangles quads cap_triangles polygons uploaded_bytes \
-             lights_rebuilt lights_cached lights_skipped",
+             lights_rebuilt lights_cached lights_skipped lights_split",
         );
         has(
             keys(&LightReport::default()),
             "name kind range subset_triangles facing_triangles quads cap_triangles path reason \
-             cached build_us gpu_us",
+             cached build_us gpu_us layers_bound parts",
         );
         has(
             keys(&InspectReport::default()),
@@ -312,7 +406,7 @@ mod tests {
         has(
             keys(&CheckReport::default()),
             "scene method adapter size pixels lights samples wrong ambiguous tolerance_px \
-             tolerance_depth closed worst lights_by_path",
+             tolerance_depth closed worst lights_by_path lights_split layers",
         );
         has(
             keys(&VolumesReport::default()),
@@ -326,6 +420,15 @@ mod tests {
             keys(&VolumesMethod::default()),
             "name ms_total ns_per_triangle quads cap_triangles polygons \
              adjacency_bytes_per_triangle",
+        );
+        has(keys(&LightLayers::default()), "name layers_bound parts");
+        has(
+            keys(&StressReport::default()),
+            "cases rendered samples wrong ambiguous closed families",
+        );
+        has(
+            keys(&StressFamily::default()),
+            "name cases rendered samples wrong ambiguous closed",
         );
         has(keys(&WorstPixel::default()), "x y light");
         has(keys(&LightsByPath::default()), "zpass zfail skipped");

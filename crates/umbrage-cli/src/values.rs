@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 use umbrage_core::InstructionSet;
+use umbrage_core::world::World;
 use umbrage_lab::Cull;
 use umbrage_lab::gpu::AdapterChoice;
 use umbrage_lab::method::UnknownMethod;
@@ -131,6 +132,10 @@ impl FromStr for CameraChoice {
             }
             None => return Ok(Self::Name(text.to_owned())),
         };
+        let most = f64::from(World::MAX_COORDINATE);
+        if eye.abs().max(target.abs()).max_element() > most {
+            return Err(format!("eye and target must lie within {most:e} m"));
+        }
         if eye == target {
             return Err("eye and target are the same point".to_owned());
         }
@@ -170,7 +175,7 @@ pub(crate) enum LightChoice {
     Scene,
     /// This many, placed by this seed.
     Seeded { count: usize, seed: u64 },
-    /// From a light file; see [`crate::light_file`].
+    /// From a light file; see [`umbrage_scene::light_file`].
     File(PathBuf),
 }
 

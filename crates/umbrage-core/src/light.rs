@@ -13,7 +13,7 @@ pub enum LightShape {
     Spot {
         /// Unit axis, pointing away from the light.
         direction: Vec3,
-        /// Cosine of the half angle beyond which no light falls.
+        /// Cosine of the half angle beyond which no light falls, -1 to 1.
         cos_outer: f32,
     },
     /// Parallel light from infinitely far; position and range are not used.
@@ -25,12 +25,14 @@ pub enum LightShape {
 
 /// A light as the shadow system sees it: no colour, no intensity.
 ///
-/// Facing, eye count and oracle use the position as it is; the GPU has 48 bits of it.
+/// Facing, eye count and oracle use the position as it is; the GPU has 48 bits of it. A light that
+/// is none ([`Light::is_usable`]) is an error nowhere: it gets an empty volume, and is skipped in
+/// plans.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// World space, relative to the world origin.
     pub position: DVec3,
-    /// Distance beyond which the light does not shine, in metres; infinity is allowed.
+    /// Distance beyond which the light does not shine, in metres; above zero, infinity is allowed.
     pub range: f32,
     /// Where it shines.
     pub shape: LightShape,
@@ -45,6 +47,21 @@ impl Light {
             _ => self.position.extend(1.0),
         }
         .to_array()
+    }
+
+    /// Whether it can shine: its position is finite in f32 and its range above zero, its direction is of
+    /// unit length and its cone has an angle, as far as its shape uses them.
+    pub fn is_usable(&self) -> bool {
+        let is_unit = |direction: Vec3| (direction.length_squared() - 1.0).abs() < 1e-2;
+        let shines = self.position.as_vec3().is_finite() && self.range > 0.0;
+        match self.shape {
+            LightShape::Point => shines,
+            LightShape::Spot {
+                direction,
+                cos_outer,
+            } => shines && is_unit(direction) && (-1.0..=1.0).contains(&cos_outer),
+            LightShape::Directional { direction } => is_unit(direction),
+        }
     }
 
     /// [`Light::homogeneous`] as two f32 each (see [`place`]): rounded, and what that leaves.

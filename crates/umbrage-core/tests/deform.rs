@@ -288,7 +288,9 @@ fn a_deformation_that_leads_nowhere_changes_nothing() {
     let refused = world.insert_deforming(&hinge(), &[0; 3], &pose);
     assert_eq!(refused, Err(length("keys", 3)));
     bad[2].y = f32::MAX;
-    let far = Pose::at(DVec3::new(0.0, 1e38, 0.0));
+    assert!(matches!(world.deform(id, &bad), Err(ObjectError::Mesh(_))));
+    bad[2].y = World::MAX_COORDINATE;
+    let far = Pose::at(DVec3::new(0.0, 1e17, 0.0));
     world.pose(id, &far).unwrap();
     assert_eq!(world.deform(id, &bad), Err(ObjectError::Pose));
     world.pose(id, &pose).unwrap();

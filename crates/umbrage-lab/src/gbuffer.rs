@@ -1,11 +1,14 @@
 //! The lab's depth pass: depth, and the surface that lights are shaded on.
 
+mod attributes;
+
 use std::borrow::Cow;
 
-use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
+use umbrage::{CLIP_WGSL, ShadowRenderer};
 use wgpu::util::DeviceExt as _;
 use wgpu::{ShaderStages, Texture, TextureFormat, TextureUsages, TextureView};
 
+use self::attributes::{Part, pack, parts};
 use crate::binding::{self, STORAGE, bind, buffer, layout};
 use crate::gpu::{Gpu, GpuError};
 use crate::stage::Stage;
@@ -102,68 +105,35 @@ pub fn depth_only(texture: &Texture) -> TextureView {
 #[derive(Debug)]
 pub struct GBufferPass {
     pipeline: wgpu::RenderPipeline,
-    bind_group: wgpu::BindGroup,
-    corners: wgpu::Buffer,
-    normals: wgpu::Buffer,
-    /// The stage's time that `normals` are of.
+    parts: Vec<Part>,
+    /// The stage's time that normals are of.
     time_s: f64,
-    /// A base colour texture and the corners that use it.
-    batches: Vec<(wgpu::BindGroup, std::ops::Range<u32>)>,
 }
 
 impl GBufferPass {
     /// Uploads what shading needs; positions are the shadow renderer's.
     pub fn new(gpu: &Gpu, stage: &Stage, shadows: &ShadowRenderer) -> Result<Self, GpuError> {
-        let world = &stage.world;
-        let soup = &stage.soup;
-        let device = &gpu.device;
-        let storage = |label: &str, bytes: &[u8]| {
-            gpu.check_storage("shading attributes", bytes.len())?;
-            Ok::<_, umbrage::RenderError>(device.create_buffer_init(
-                &wgpu::util::BufferInitDescriptor {
-                    label: Some(label),
-                    contents: if bytes.is_empty() { &[0; 32] } else { bytes },
-                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                },
-            ))
-        };
-        // Objects that are no actors have the first material, the normals of their faces, no texture.
-        let surfaces = stage.surfaces();
-        let sources = || surfaces.iter().map(|t| t.map(|t| t as usize));
-        let material: Vec<u32> = sources()
-            .map(|t| t.map_or(0, |t| soup.material[t]))
-            .collect();
-        let mut normals = vec![0u32];
-        if !soup.normals.is_empty() {
-            let packed = |t: Option<usize>| t.map_or([0; 3], |t| soup.normals[t].map(pack));
-            normals = sources().flat_map(packed).collect();
-        }
-        let mut uvs = vec![glam::Vec2::ZERO];
-        if !soup.uvs.is_empty() {
-            let of = |t: Option<usize>| t.map_or([glam::Vec2::ZERO; 3], |t| soup.uvs[t]);
-            uvs = sources().flat_map(of).collect();
-        }
-        let materials: Vec<[[f32; 4]; 2]> = stage
-            .scene
-            .materials
-            .iter()
-            .map(|m| [m.base_color.to_array(), [m.roughness, m.metallic, 0.0, 0.0]])
-            .collect();
-        let [materials_of, normals, uvs, materials] = [
-            storage("triangle materials", bytemuck::cast_slice(&material))?,
-            storage("normals", bytemuck::cast_slice(&normals))?,
-            storage("texture coordinates", bytemuck::cast_slice(&uvs))?,
-            storage("materials", bytemuck::cast_slice(&materials))?,
-        ];
+        Self::with_pipeline(gpu, None, stage, shadows)
+    }
 
-        let image_of = |t: usize| stage.scene.materials[material[t] as usize].base_color_image;
-        let mut order: Vec<u32> = (0..world.triangles.len() as u32).collect();
-        order.sort_by_key(|&t| image_of(t as usize));
-        let corner_ids: Vec<u32> = order
-            .iter()
-            .flat_map(|&t| [3 * t, 3 * t + 1, 3 * t + 2])
-            .collect();
+    /// The same for other triangles, or for a world whose buffers were replaced; `shadows` is the
+    /// renderer that it was made for.
+    pub fn renew(
+        &mut self,
+        gpu: &Gpu,
+        stage: &Stage,
+        shadows: &ShadowRenderer,
+    ) -> Result<(), GpuError> {
+        *self = Self::with_pipeline(gpu, Some(self.pipeline.clone()), stage, shadows)?;
+        Ok(())
+    }
 
+    fn with_pipeline(
+        gpu: &Gpu,
+        kept: Option<wgpu::RenderPipeline>,
+        stage: &Stage,
+        shadows: &ShadowRenderer,
+    ) -> Result<Self, GpuError> {
         let stages = ShaderStages::VERTEX_FRAGMENT;
         let attributes = layout(gpu, "gbuffer", stages, [buffer(STORAGE); 4]);
         let texture = binding::texture(
@@ -178,32 +148,15 @@ impl GBufferPass {
             [texture, sampler],
         );
         let world_layout = shadows.world_bind_group_layout();
-        let pipeline = pipeline(gpu, [&attributes, &images, world_layout]);
-        let buffers = [&materials_of, &normals, &uvs, &materials];
-        let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-        let bind_group = bind(gpu, "gbuffer", &attributes, resources);
-        let mut batches = Vec::new();
-        let mut end = 0;
-        for batch in order.chunk_by(|&a, &b| image_of(a as usize) == image_of(b as usize)) {
-            let start = end;
-            end += 3 * batch.len() as u32;
-            let image = image_of(batch[0] as usize).map(|i| &stage.scene.images[i as usize]);
-            batches.push((image_bind_group(gpu, &images, image), start..end));
-        }
+        let layouts = [&attributes, &images, world_layout];
+        let pipeline = kept.unwrap_or_else(|| pipeline(gpu, shadows, layouts));
+        let images_of = &stage.scene.images;
+        let parts = parts(gpu, stage, &attributes, |image| {
+            image_bind_group(gpu, &images, image.map(|i| &images_of[i as usize]))
+        })?;
         Ok(Self {
-            bind_group,
-            corners: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("corners"),
-                contents: bytemuck::cast_slice(if corner_ids.is_empty() {
-                    &[0]
-                } else {
-                    &corner_ids
-                }),
-                usage: wgpu::BufferUsages::INDEX,
-            }),
-            normals,
+            parts,
             time_s: stage.time_s,
-            batches,
             pipeline,
         })
     }
@@ -220,9 +173,9 @@ impl GBufferPass {
             let normals = sources
                 .flat_map(|t| stage.soup.normals[(actor.triangles.start + t) as usize].map(pack));
             let normals: Vec<u32> = normals.collect();
-            let start = (3 * range.start * size_of::<u32>()) as u64;
-            let bytes = bytemuck::cast_slice(&normals);
-            gpu.queue.write_buffer(&self.normals, start, bytes);
+            for part in &self.parts {
+                part.write_normals(gpu, range.start as u32, &normals);
+            }
         }
     }
 
@@ -264,26 +217,22 @@ impl GBufferPass {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bind_group, &[]);
         pass.set_bind_group(2, shadows.world_bind_group(), &[]);
-        pass.set_index_buffer(self.corners.slice(..), wgpu::IndexFormat::Uint32);
-        for (image, corners) in &self.batches {
-            pass.set_bind_group(1, image, &[]);
-            pass.draw_indexed(corners.clone(), 0, 0..1);
+        for part in &self.parts {
+            part.draw(&mut pass);
         }
     }
 }
 
-fn pack(n: glam::Vec3) -> u32 {
-    let byte = |x: f32| (x.clamp(-1.0, 1.0) * 127.0).round() as i8 as u8;
-    u32::from_le_bytes([byte(n.x), byte(n.y), byte(n.z), 0])
-}
-
-fn pipeline(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 3]) -> wgpu::RenderPipeline {
+fn pipeline(
+    gpu: &Gpu,
+    shadows: &ShadowRenderer,
+    layouts: [&wgpu::BindGroupLayout; 3],
+) -> wgpu::RenderPipeline {
     let device = &gpu.device;
     let source = format!(
         "{CLIP_WGSL}\n{}\n{}",
-        world_wgsl(2),
+        shadows.world_wgsl(2),
         include_str!("shaders/gbuffer.wgsl")
     );
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {

@@ -1,5 +1,7 @@
 //! Adapter and device: the one place where the lab touches the machine.
 
+use std::sync::{Arc, OnceLock};
+
 use thiserror::Error;
 use umbrage::{RenderError, check_storage};
 use umbrage_truth::NearClip;
@@ -73,7 +75,7 @@ pub enum GpuError {
         limit: usize,
     },
     /// Reading results back failed.
-    #[error("the device was lost while a frame was read back: {0}")]
+    #[error("a frame could not be read back: {0}")]
     Readback(String),
     /// A world that f32 cannot hold, and a method that has no more.
     #[error(
@@ -84,6 +86,12 @@ pub enum GpuError {
         /// Its name.
         method: String,
     },
+    /// The device is gone: unplugged, reset by the system, or hung.
+    #[error(
+        "the GPU device was lost ({0}): start again; if it happens again, choose a smaller size, \
+         fewer lights, or another --adapter"
+    )]
+    DeviceLost(String),
     /// The method makes no mask that could be applied so.
     #[error(transparent)]
     NoMask(#[from] crate::application::NoMask),
@@ -118,6 +126,8 @@ pub struct Gpu {
     pub driver: String,
     /// Whether z-pass is safe (`DEPTH_CLIP_CONTROL`).
     pub depth_clamp: bool,
+    /// Why the device was lost, once it was.
+    lost: Arc<OnceLock<String>>,
     /// Nanoseconds per timestamp tick, where there are timestamps.
     pub timestamp_ns: Option<f32>,
 }
@@ -132,6 +142,59 @@ impl Gpu {
         check_storage(&self.device, what, bytes as u64).map(|_| ())
     }
 
+    /// A buffer with something in it. Unlike wgpu's own way, which maps it, this takes a lost device
+    /// in silence: what is drawn then is never read.
+    pub(crate) fn create_buffer_init(
+        &self,
+        init: &wgpu::util::BufferInitDescriptor<'_>,
+    ) -> wgpu::Buffer {
+        let alignment = wgpu::COPY_BUFFER_ALIGNMENT as usize;
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: init.label,
+            size: init
+                .contents
+                .len()
+                .next_multiple_of(alignment)
+                .max(alignment) as u64,
+            usage: init.usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, init.contents);
+        buffer
+    }
+
+    /// The error, or that the device was lost if that explains it.
+    pub(crate) fn lost_or(&self, error: GpuError) -> GpuError {
+        match self.lost.get() {
+            Some(why) => GpuError::DeviceLost(why.clone()),
+            None => error,
+        }
+    }
+
+    /// Whether the device is still there.
+    pub(crate) fn check_alive(&self) -> Result<(), GpuError> {
+        // It is told no earlier. What a poll has to say in words, the reason says too.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        match self.lost.get() {
+            Some(why) => Err(GpuError::DeviceLost(why.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether any buffer of so many bytes can be made.
+    pub(crate) fn check_buffer(&self, what: &'static str, needed: u64) -> Result<(), RenderError> {
+        let limit = self.device.limits().max_buffer_size;
+        if needed > limit {
+            return Err(RenderError::BufferTooLarge {
+                what,
+                needed,
+                limit_name: "max_buffer_size",
+                limit,
+            });
+        }
+        Ok(())
+    }
+
     /// What happens to surfaces before the near plane.
     pub fn near_clip(&self) -> NearClip {
         match self.depth_clamp {
@@ -143,6 +206,14 @@ impl Gpu {
     /// Finds an adapter and opens a device with the limits the adapter has. Errors that the
     /// validation layer reports later are fatal: the lab must never cause one.
     pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        Self::open_limited(choice, |_| ())
+    }
+
+    /// As [`Gpu::open`], with limits that `lower` may lower: what a smaller device would do.
+    pub fn open_limited(
+        choice: &AdapterChoice,
+        lower: impl FnOnce(&mut wgpu::Limits),
+    ) -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::PRIMARY,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -178,16 +249,24 @@ impl Gpu {
             | wgpu::Features::INDIRECT_FIRST_INSTANCE
             | wgpu::Features::TIMESTAMP_QUERY;
         let features = adapter.features() & wanted;
+        let mut limits = adapter.limits();
+        lower(&mut limits);
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("umbrage lab"),
             required_features: features,
-            required_limits: adapter.limits(),
+            required_limits: limits,
             ..wgpu::DeviceDescriptor::default()
         }))
         .map_err(|e| GpuError::NoDevice {
             adapter: info.name.clone(),
             message: e.to_string(),
         })?;
+        let lost = Arc::new(OnceLock::new());
+        let why = Arc::clone(&lost);
+        device.set_device_lost_callback(move |reason, message| {
+            // The first reason is the cause of all that follow.
+            let _ = why.set(format!("{reason:?}: {message}"));
+        });
         let timestamp_ns = features
             .contains(wgpu::Features::TIMESTAMP_QUERY)
             .then(|| queue.get_timestamp_period());
@@ -198,6 +277,7 @@ impl Gpu {
             driver: format!("{} {}", info.driver, info.driver_info)
                 .trim()
                 .to_owned(),
+            lost,
             device,
             queue,
         })

@@ -6,10 +6,10 @@ use glam::Vec3;
 use half::f16;
 use umbrage::frame::bounds::light_rect;
 use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
-use umbrage::volume::{VolumeBuilder, Volumes};
+use umbrage::volume::{LayerLimit, VolumeBuilder, Volumes};
 use umbrage::{
     Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
-    VolumeColor,
+    VolumeColor, WorldWindows,
 };
 use umbrage_truth::{Mask, NearClip};
 
@@ -24,6 +24,7 @@ use crate::stage::{Stage, StageLight};
 use crate::technique::{Overflow, TechniqueReport, technique};
 use crate::timer::{StageTimes, Timer, medians, ms_since};
 
+use crate::method::Counting;
 pub use crate::method::Method;
 
 /// Frames of one view in the drawing.
@@ -42,6 +43,8 @@ pub struct Lab {
     pub culls: Culls,
     /// What masks leave of a light in its shadow.
     pub application: Application,
+    /// Layers that the stencil is taken to hold; masks of other kinds have none in parts.
+    pub layers: LayerLimit,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -68,6 +71,7 @@ impl Lab {
             gpu,
             culls: Culls::EVERY,
             application: Application::default(),
+            layers: LayerLimit::STENCIL,
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -111,6 +115,11 @@ impl Lab {
         let in_view = |light: &Light| !culls.has(Cull::View) || !light_rect(view, light).is_empty();
         self.builder.culls = culls;
         self.builder.construction = recipe.construction;
+        self.builder.layers = match method.counting() {
+            Counting::Stencil => self.layers,
+            // In parts there would be more faces, and fewer layers that a mask can represent.
+            Counting::Mask(_) => LayerLimit::NONE,
+        };
         self.builder
             .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         self.times.volumes = ms_since(start);
@@ -135,6 +144,7 @@ impl Lab {
         draw: LightDraw,
         volume_color: VolumeColor,
     ) -> Result<Run, GpuError> {
+        self.gpu.check_alive()?;
         if !stage.world.residuals.is_empty() && !method.takes_residuals() {
             return Err(GpuError::NeedsF32 {
                 method: method.name().into_owned(),
@@ -150,6 +160,7 @@ impl Lab {
                 depth_clamp: self.gpu.depth_clamp,
                 extrusion: self.method.recipe().unwrap_or_default().extrusion,
                 volume_color,
+                windows: WorldWindows::of(&self.gpu.device, &stage.world)?,
             },
         )?;
         shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
@@ -167,6 +178,7 @@ impl Lab {
             surface,
             technique,
             method,
+            draw,
             built: stage.world.topology(),
         })
     }
@@ -269,7 +281,8 @@ impl Lab {
         self.gpu.queue.submit([encoder.finish()]);
         self.times.record = ms_since(record);
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        done.map_err(|e| GpuError::Readback(e.to_string()))?;
+        done.map_err(|e| self.gpu.lost_or(GpuError::Readback(e.to_string())))?;
+        self.gpu.check_alive()?;
         self.times.frame = ms_since(start);
         if let Some(timer) = timer {
             let [surface, receivers, lights] = timer.read(&self.gpu)?;
@@ -289,10 +302,14 @@ impl Lab {
         lights: &[StageLight],
         view: &View,
     ) -> Result<(), GpuError> {
+        self.gpu.check_alive()?;
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        if WorldWindows::of(device, &stage.world)? != run.shadows.world_windows() {
+            *run = self.run(stage, view, run.method, run.draw, VolumeColor::None)?;
+        }
         let replaced = run.shadows.upload_world(device, queue, &stage.world)?;
         if run.rebuilt(stage) || replaced {
-            run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
+            run.surface.renew(&self.gpu, stage, &run.shadows)?;
         }
         run.surface.update(&self.gpu, stage);
         let mut frame = self.frame(view);
@@ -469,7 +486,12 @@ impl Lab {
     pub fn quads_drawn(&self, light: usize) -> u32 {
         match (self.path(light), self.calls.get(light)) {
             (LightPath::Skipped(_), _) => 0,
-            (_, Some(calls)) => calls.sides.vertex_count / 6,
+            (_, Some(calls)) => {
+                let parts = self.plan.lights[light].parts.iter().skip(1);
+                let further = parts.filter_map(|part| self.calls.get(part.number as usize));
+                let calls = std::iter::once(calls).chain(further);
+                calls.map(|calls| calls.sides.vertex_count / 6).sum()
+            }
             (_, None) => self.plan.lights[light].quads.len() as u32,
         }
     }

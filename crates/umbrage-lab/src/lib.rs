@@ -6,6 +6,7 @@ pub mod actors;
 pub mod application;
 pub mod auto_camera;
 mod binding;
+pub mod camera;
 pub mod gbuffer;
 pub mod gpu;
 pub mod heat;
@@ -21,4 +22,4 @@ pub mod stage;
 pub mod technique;
 pub mod timer;
 
-pub use umbrage::{Cull, Culls, Uploaded};
+pub use umbrage::{Cull, Culls, RenderError, Uploaded, WorldWindows};

@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
 use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer, light_wgsl};
-use wgpu::util::DeviceExt as _;
 use wgpu::{RenderPipeline, TextureFormat};
 
 use crate::gbuffer::whole;
@@ -239,11 +238,13 @@ impl LightPass {
             uniforms.push(LightUniform::zeroed());
         }
         let device = &given.gpu.device;
-        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("lights"),
-            contents: bytemuck::cast_slice(&uniforms),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
+        let buffer = given
+            .gpu
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("lights"),
+                contents: bytemuck::cast_slice(&uniforms),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
         let targets = given.targets;
         let views = [&targets.albedo, &targets.normal, &targets.distance].map(whole);
         let buffers = [given.shadows.view_buffer(), &buffer];

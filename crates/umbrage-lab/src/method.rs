@@ -239,6 +239,15 @@ impl Method {
         }
     }
 
+    /// What it counts volumes in, if it has any.
+    pub fn counting(self) -> Counting {
+        match self {
+            Method::Mask(buffer) => Counting::Mask(buffer),
+            Method::LowResolution { of, .. } => of,
+            _ => Counting::Stencil,
+        }
+    }
+
     /// Whether it can leave this much of a light in its shadow.
     pub fn check(self, application: Application) -> Result<(), NoMask> {
         match (self, application) {

@@ -8,9 +8,11 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuEr
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     let row = size.width * texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let bytes = u64::from(padded) * u64::from(size.height);
+    gpu.check_buffer("pixels read back", bytes)?;
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
-        size: u64::from(padded) * u64::from(size.height),
+        size: bytes,
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
@@ -68,7 +70,7 @@ pub(crate) fn read_items<T: bytemuck::Pod>(
 
 /// Reads a mappable buffer.
 pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
-    let lost = |e: String| GpuError::Readback(e);
+    let lost = |e: String| gpu.lost_or(GpuError::Readback(e));
     let slice = buffer.slice(..);
     let (send, receive) = std::sync::mpsc::channel();
     slice.map_async(wgpu::MapMode::Read, move |result| {

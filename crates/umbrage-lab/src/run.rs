@@ -5,6 +5,7 @@ use umbrage::{Frame, LightCalls, ShadowRenderer};
 
 use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
 use crate::gpu::{Gpu, GpuError};
+use crate::light_pass::LightDraw;
 use crate::method::Method;
 use crate::readback::{read_items, record_copy};
 use crate::stage::{Stage, StageLight};
@@ -20,6 +21,8 @@ pub struct Run {
     pub(crate) technique: Box<dyn Technique>,
     /// Whose technique it is.
     pub(crate) method: Method,
+    /// What its lights leave in the targets.
+    pub(crate) draw: LightDraw,
     /// What triangles `surface` knows.
     pub(crate) built: Vec<u64>,
 }
@@ -88,7 +91,7 @@ pub(crate) fn read_calls(gpu: &Gpu, run: &Run) -> Result<Vec<LightCalls>, GpuErr
 }
 
 fn calls_of(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuError> {
-    let Some(calls) = shadows.calls() else {
+    let Some(windows) = shadows.calls() else {
         return Ok(Vec::new());
     };
     let mut encoder = gpu
@@ -96,9 +99,25 @@ fn calls_of(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuE
         .create_command_encoder(&wgpu::CommandEncoderDescriptor {
             label: Some("calls"),
         });
-    let readable = record_copy(gpu, &mut encoder, calls);
+    let readable: Vec<wgpu::Buffer> = windows
+        .map(|calls| record_copy(gpu, &mut encoder, calls))
+        .collect();
     gpu.queue.submit([encoder.finish()]);
-    read_items(gpu, &readable)
+    let mut all: Vec<LightCalls> = Vec::new();
+    for window in &readable {
+        let more: Vec<LightCalls> = read_items(gpu, window)?;
+        all.resize(all.len().max(more.len()), LightCalls::default());
+        for (sum, window) in all.iter_mut().zip(more) {
+            let sides = sum.sides.vertex_count + window.sides.vertex_count;
+            let caps = sum.caps.vertex_count + window.caps.vertex_count;
+            let reversed = sum.reversed_caps.vertex_count + window.reversed_caps.vertex_count;
+            *sum = window;
+            sum.sides.vertex_count = sides;
+            sum.caps.vertex_count = caps;
+            sum.reversed_caps.vertex_count = reversed;
+        }
+    }
+    Ok(all)
 }
 
 /// A target that no light was added to yet.

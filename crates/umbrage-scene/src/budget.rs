@@ -1,15 +1,18 @@
 //! How much memory the geometry of one file may take.
 //!
-//! A small file can name one accessor a million times, or an accessor of zeros that has no data at
-//! all, so what is expanded is counted before it is allocated. Invariant: the vectors of all meshes
-//! together never take more than the limit.
+//! A small file can name one accessor or place one mesh a million times, or declare an accessor of
+//! zeros that has no data at all, so what is expanded is counted before it is allocated. Invariant:
+//! the vectors of all meshes and the soup of all instances together never take more than the limit.
+//! Real scenes take up to 13 times their size.
 
 use std::path::Path;
 
-use crate::SceneError;
+use glam::Vec3;
 
-/// Any file may expand to this, in bytes.
-const FLOOR: u64 = 1 << 30;
+use crate::{Instance, Scene, SceneError, Soup};
+
+/// Any file may expand to this, in bytes: some five million triangles, whose world then fits 2 GiB.
+const FLOOR: u64 = 1 << 29;
 /// Beyond it, to this many times its real size, buffers included.
 const FACTOR: u64 = 64;
 
@@ -26,6 +29,29 @@ impl Budget {
             used: 0,
             limit: FLOOR.max(bytes.saturating_mul(FACTOR)),
         }
+    }
+
+    /// Grants the soup of all instances, or refuses.
+    pub(crate) fn take_flattened(&mut self, scene: &Scene, path: &Path) -> Result<(), SceneError> {
+        let used = || {
+            let mesh = |i: &Instance| scene.meshes.get(i.mesh as usize);
+            scene.instances.iter().filter_map(mesh)
+        };
+        let shaded = used().any(|mesh| !mesh.normals.is_empty());
+        let textured = used().any(|mesh| !mesh.uvs.is_empty());
+        let triangle = Soup::triangle_bytes(shaded, textured);
+        for (item, mesh) in used().enumerate() {
+            let name = || format!("instance {item} of {}, flattened,", scene.instances.len());
+            // Positions and, far from the origin, what f32 leaves of them.
+            self.take(
+                mesh.positions.len() as u64,
+                2 * size_of::<Vec3>(),
+                path,
+                name,
+            )?;
+            self.take(mesh.triangles.len() as u64, triangle, path, name)?;
+        }
+        Ok(())
     }
 
     /// Grants `count` items of `size` bytes for `item`, or refuses.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum SceneError {
     /// The operating system refused to read or write.
-    #[error("{}: {source}; check that the file exists and may be accessed", path.display())]
+    #[error("{}: {source}; check that it is there, may be accessed, and has room", path.display())]
     Io {
         /// File that was read or written.
         path: PathBuf,
@@ -15,7 +15,7 @@ pub enum SceneError {
         source: std::io::Error,
     },
     /// A path that is no regular file.
-    #[error("{}: not a regular file; give the path of a .glb, .gltf or .obj file", path.display())]
+    #[error("{}: not a regular file; give the path of a file", path.display())]
     NotAFile {
         /// The path.
         path: PathBuf,
@@ -89,7 +89,7 @@ pub enum SceneError {
         path: PathBuf,
         /// Index of the accessor.
         accessor: usize,
-        /// Its name, empty if it has none.
+        /// Its name.
         name: String,
         /// What is wrong with it.
         what: String,
@@ -169,6 +169,16 @@ pub enum SceneError {
     NotText {
         /// The file.
         path: PathBuf,
+    },
+    /// A light file cannot be understood, or a light in it has a value out of bounds.
+    #[error("{}: {item}: {what}; correct the light file", path.display())]
+    LightFile {
+        /// The .json file.
+        path: PathBuf,
+        /// Light at fault, with number and name.
+        item: String,
+        /// What is wrong with it.
+        what: String,
     },
     /// The file names far more data than it holds.
     #[error("{}: {item} would need {bytes} bytes, beyond the limit of {limit} for a file of this size; remove repeated geometry or split the file", path.display())]

@@ -1,8 +1,9 @@
 //! Decoding of base colour images: PNG and JPEG to eight bits a channel.
 //!
 //! Takes encoded bytes; gives an [`Image`] without a name. Invariant: nothing is allocated for
-//! pixels that the encoded bytes cannot hold, and all images of one scene together stay below
-//! [`MAX_PIXELS`].
+//! pixels that the encoded bytes cannot hold; no image has more than [`MAX_PIXELS_OF_ONE`], and all
+//! of one scene together have no more than that unless they have the bytes for it, and never more
+//! than [`MAX_PIXELS`].
 
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
@@ -13,6 +14,12 @@ use crate::{Image, Scene};
 
 /// Most pixels that the images of one scene may have together: 1 GiB.
 const MAX_PIXELS: u64 = 1 << 28;
+
+/// Most pixels of one image: 8192 by 8192, 256 MiB, which any GPU takes as a texture.
+const MAX_PIXELS_OF_ONE: u64 = 1 << 26;
+
+/// Beyond it, most pixels of a scene for each byte of its images: photographs have about ten.
+const PIXELS_FOR_A_BYTE: u64 = 64;
 
 /// Most pixels that a byte of an encoded image can stand for. Deflate repeats at most 258 bytes in
 /// two bits, 1032 to one, and a row may have eight pixels a byte; a JPEG block of 64 pixels takes
@@ -31,11 +38,13 @@ pub(crate) enum ImageError {
 #[derive(Default)]
 pub(crate) struct Decoder {
     pixels: u64,
+    bytes: u64,
 }
 
 impl Decoder {
     /// Decodes one image, told apart by its first bytes.
     pub(crate) fn decode(&mut self, bytes: &[u8]) -> Result<Image, ImageError> {
+        self.bytes += bytes.len() as u64;
         let result = match bytes {
             [0x89, b'P', b'N', b'G', ..] => self.png(bytes),
             [0xFF, 0xD8, ..] => self.jpeg(bytes),
@@ -53,9 +62,16 @@ impl Decoder {
                 "{width} x {height} pixels cannot be in {bytes} bytes"
             ));
         }
-        if self.pixels + pixels > MAX_PIXELS {
+        if pixels > MAX_PIXELS_OF_ONE {
             return Err(format!(
-                "{width} x {height} pixels exceed the limit of a scene"
+                "{width} x {height} pixels are more than the {MAX_PIXELS_OF_ONE} of an image"
+            ));
+        }
+        let earned = self.bytes.saturating_mul(PIXELS_FOR_A_BYTE);
+        let most = earned.clamp(MAX_PIXELS_OF_ONE, MAX_PIXELS);
+        if self.pixels + pixels > most {
+            return Err(format!(
+                "with {width} x {height} pixels more the images of the scene exceed {most}"
             ));
         }
         self.pixels += pixels;

@@ -8,6 +8,29 @@
 //! a panic, and memory stays bounded by the real size of the file, not by what it claims.
 //! Oddities that do no harm are repaired or skipped, and counted in [`Scene::report`].
 //!
+//! | input | behaviour |
+//! |---|---|
+//! | not there, a folder, a device, empty, binary or UTF-16 where text is due | error; an empty `.obj` is a scene without triangles |
+//! | positions NaN, infinite or beyond f32, also once placed in the world | error with mesh or instance, and vertex |
+//! | an index out of range: vertex, accessor, buffer view, node, material, skin, joint | error with who refers to what; OBJ: with the line |
+//! | normals, texture coordinates, weights, images, animation channels that cannot be used | left out or repaired, counted |
+//! | a node that is its own ancestor, or has two parents | error with the node; depth is not limited |
+//! | an accessor, sparse or not, or buffer longer than its bytes | error before anything is allocated |
+//! | geometry named, zero-filled or placed again and again | error beyond 512 MiB or 64 times the bytes read, soup included |
+//! | an image larger than its bytes can hold, than 2^26 pixels, or than the scene may have left (2^26 pixels, or 64 a byte of image up to 2^28) | left out, counted |
+//! | a file named again and again, in whatever spelling | read once (buffers, libraries) |
+//! | an OBJ polygon of more than 256 corners | halved again and again, also where it is concave |
+//! | no triangles, no lights | a scene |
+//! | glTF lights with colour, intensity, range or cone out of bounds | clamped, counted: intensity below zero is zero, beyond f32 the largest, a range that is not above zero and finite is none |
+//! | the same in a light file ([`light_file`]) | error with the light and the key |
+//! | a transform that mirrors | the winding is reversed; the front stays the front |
+//! | a transform without volume | kept: its triangles degenerate |
+//! | a transform with NaN or infinity | error with the node |
+//! | an unknown extension, if required | error with its name |
+//!
+//! What is no light or no place at the level of the world is stated in `umbrage-core` at
+//! `Light::is_usable` and `World::MAX_COORDINATE`.
+//!
 //! ```
 //! let scene = umbrage_scene::open("gen:field?n=8&lights=2", &()).unwrap();
 //! let soup = scene.soup().unwrap();
@@ -21,6 +44,7 @@ mod error;
 mod generate;
 mod gltf;
 mod image;
+pub mod light_file;
 mod obj;
 mod progress;
 mod report;
@@ -38,15 +62,28 @@ pub use progress::Progress;
 pub use report::LoadReport;
 pub use scene::{AlphaMode, Camera, Image, Instance, Light, LightKind, Material, Mesh, Scene};
 pub use soup::{MAX_ROUNDING_M, MAX_TRIANGLES, Soup};
+pub use source::{Disk, Files};
 
 /// Loads a `.glb`, `.gltf` or `.obj` file, chosen by its extension.
 ///
 /// # Errors
 /// An unknown extension, or whatever the file's format makes impossible to read.
 pub fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneError> {
+    load_from(path, &Disk, progress)
+}
+
+/// As [`load`], for files that lie elsewhere than on disk: in an archive, or in memory.
+///
+/// # Errors
+/// As [`load`], and what `files` refuses.
+pub fn load_from(
+    path: &Path,
+    files: &dyn Files,
+    progress: &dyn Progress,
+) -> Result<Scene, SceneError> {
     match Format::of(path)? {
-        Format::Gltf => gltf::load(path, progress),
-        Format::Obj => obj::load(path, progress),
+        Format::Gltf => gltf::load(path, files, progress),
+        Format::Obj => obj::load(path, files, progress),
     }
 }
 

@@ -1,17 +1,23 @@
 //! URIs of buffers and images: base64 or plain data, or a file beside the scene.
 //!
-//! Takes a URI and the path of the scene; gives bytes. Absolute paths and schemes other than
-//! `data:` are refused: a scene reads only what lies beside it.
+//! Takes a URI and the path of the scene; gives bytes, or the path of a file. Absolute paths and
+//! schemes other than `data:` are refused: a scene reads only what lies beside it.
 //! Sources: RFC 2397 (data), RFC 4648 section 4 (base64), RFC 3986 section 2.1 (percent).
 
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
-use crate::source;
+/// What a URI stands for.
+pub(crate) enum Place {
+    /// Bytes that it holds itself.
+    Data(Vec<u8>),
+    /// A file, the same path however it is spelled.
+    File(PathBuf),
+}
 
-/// The bytes behind a URI, or why they cannot be had.
-pub(crate) fn fetch(uri: &str, scene: &Path) -> Result<Vec<u8>, String> {
+/// What a URI in the file `scene` stands for, or why it cannot be had.
+pub(crate) fn place(uri: &str, scene: &Path) -> Result<Place, String> {
     if let Some(data) = uri.get(..5).filter(|s| s.eq_ignore_ascii_case("data:")) {
-        return data_uri(&uri[data.len()..]);
+        return data_uri(&uri[data.len()..]).map(Place::Data);
     }
     if has_scheme(uri) {
         return Err(format!(
@@ -19,17 +25,26 @@ pub(crate) fn fetch(uri: &str, scene: &Path) -> Result<Vec<u8>, String> {
             clip(uri)
         ));
     }
-    fetch_file(&percent_decoded(uri)?, scene)
+    beside(&percent_decoded(uri)?, scene).map(Place::File)
 }
 
-/// The bytes of the file with this relative path, seen from the scene's folder.
-pub(crate) fn fetch_file(relative: &str, scene: &Path) -> Result<Vec<u8>, String> {
+/// The path of the file with this relative path, seen from the scene's folder.
+pub(crate) fn beside(relative: &str, scene: &Path) -> Result<PathBuf, String> {
     let file = Path::new(relative);
     if file.is_absolute() || file.has_root() {
         return Err(format!("{}: absolute paths are not read", clip(relative)));
     }
-    let path = scene.parent().unwrap_or(Path::new("")).join(file);
-    source::read(&path).map_err(|error| error.to_string())
+    let mut path = PathBuf::new();
+    for part in file.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if path.file_name().is_some() => {
+                path.pop();
+            }
+            part => path.push(part),
+        }
+    }
+    Ok(scene.parent().unwrap_or(Path::new("")).join(path))
 }
 
 /// A name for messages and images: the file name, or nothing for a data URI.

@@ -102,7 +102,9 @@ fn every_file_gives_a_scene_or_an_error_that_names_it() {
                 folders.push(path);
             } else if let Err(error) = load_and_move(&path) {
                 let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-                assert!(error.to_string().contains(&name), "{error}");
+                let message = error.to_string();
+                assert!(message.contains(&name), "names no file: {message}");
+                assert!(message.contains("; "), "has no remedy: {message}");
             }
             files += 1;
         }

@@ -1,21 +1,29 @@
 //! Storage buffers that follow arrays on the CPU, upload what changed, and grow.
 
 use std::ops::Range;
+use std::task::{Context, Poll, Waker};
 
-use wgpu::{Buffer, BufferUsages, Device, Queue};
+use wgpu::{Buffer, BufferUsages, Device, Limits, Queue};
 
 use crate::RenderError;
 
+/// The most bytes that a storage buffer may have, and the name of the limit that says so.
+pub(crate) fn binding_limit(limits: &Limits) -> (u64, &'static str) {
+    let binding = (
+        limits.max_storage_buffer_binding_size,
+        "max_storage_buffer_binding_size",
+    );
+    binding.min((limits.max_buffer_size, "max_buffer_size"))
+}
+
 /// The most bytes that a storage buffer may have on `device`, if `needed` are no more.
 pub fn check_storage(device: &Device, what: &'static str, needed: u64) -> Result<u64, RenderError> {
-    let limits = device.limits();
-    let limit = limits
-        .max_storage_buffer_binding_size
-        .min(limits.max_buffer_size);
+    let (limit, limit_name) = binding_limit(&device.limits());
     if needed > limit {
         return Err(RenderError::BufferTooLarge {
             what,
             needed,
+            limit_name,
             limit,
         });
     }
@@ -28,6 +36,8 @@ pub(crate) struct Growing {
     label: &'static str,
     usage: BufferUsages,
     pub(crate) buffer: Buffer,
+    /// It never grows beyond this, and needs not.
+    pub(crate) most: u64,
     /// What it holds, where the caller has no other way of knowing.
     copy: Vec<u8>,
 }
@@ -49,14 +59,19 @@ impl std::ops::AddAssign for Written {
 }
 
 impl Growing {
-    pub(crate) fn new(device: &Device, label: &'static str, usage: BufferUsages) -> Self {
+    pub(crate) fn new(
+        device: &Device,
+        label: &'static str,
+        usage: BufferUsages,
+    ) -> Result<Self, RenderError> {
         let usage = usage | BufferUsages::STORAGE | BufferUsages::COPY_DST;
-        Self {
+        Ok(Self {
             label,
             usage,
-            buffer: allocate(device, label, 4096, usage),
+            buffer: allocate(device, label, 4096, usage)?,
+            most: u64::MAX,
             copy: Vec::new(),
-        }
+        })
     }
 
     /// Makes room for `needed` bytes; true if the buffer was replaced and so holds nothing.
@@ -64,8 +79,11 @@ impl Growing {
         let limit = check_storage(device, self.label, needed)?;
         let short = needed > self.buffer.size();
         if short {
-            let size = (needed + needed / 2).next_multiple_of(256).min(limit & !3);
-            self.buffer = allocate(device, self.label, size, self.usage);
+            let size = (needed + needed / 2)
+                .next_multiple_of(256)
+                .min(limit.min(self.most) & !3);
+            self.buffer = allocate(device, self.label, size, self.usage)?;
+            self.copy.clear();
         }
         Ok(short)
     }
@@ -112,11 +130,35 @@ impl Growing {
     }
 }
 
-fn allocate(device: &Device, label: &'static str, size: u64, usage: BufferUsages) -> Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
+fn allocate(
+    device: &Device,
+    label: &'static str,
+    size: u64,
+    usage: BufferUsages,
+) -> Result<Buffer, RenderError> {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,
         usage,
         mapped_at_creation: false,
-    })
+    });
+    match captured(scope) {
+        Some(_) => Err(RenderError::NoMemory {
+            what: label,
+            bytes: size,
+        }),
+        None => Ok(buffer),
+    }
+}
+
+/// What a scope has caught. Everywhere but in a browser that is known at once; there an error is
+/// the host's to see.
+pub fn captured(scope: wgpu::ErrorScopeGuard) -> Option<wgpu::Error> {
+    let found = std::pin::pin!(scope.pop());
+    let mut context = Context::from_waker(Waker::noop());
+    match found.poll(&mut context) {
+        Poll::Ready(error) => error,
+        Poll::Pending => None,
+    }
 }

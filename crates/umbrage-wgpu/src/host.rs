@@ -9,6 +9,8 @@ use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, View};
 use wgpu::TextureFormat;
 
+use crate::WorldWindows;
+
 /// What the host's frame looks like.
 #[derive(Clone, Debug)]
 pub struct RendererOptions<'a> {
@@ -25,6 +27,8 @@ pub struct RendererOptions<'a> {
     pub extrusion: Extrusion,
     /// What volumes write to the first colour target: nothing, but for debug views.
     pub volume_color: VolumeColor,
+    /// In how many windows the worlds to come are: [`WorldWindows::of`] tells what a world needs.
+    pub windows: WorldWindows,
 }
 
 /// What volumes add to the first colour target, which must then be blendable.
@@ -50,16 +54,59 @@ pub enum RenderError {
     NoStencil(TextureFormat),
     /// A buffer would pass a device limit.
     #[error(
-        "{what} need {needed} bytes; this device binds at most {limit}: \
-         request a higher max_storage_buffer_binding_size, or split the world"
+        "{what} need {needed} bytes, more than this device's {limit_name} of {limit}: request a \
+         device with a higher limit, or draw fewer lights, a smaller picture or a smaller world"
     )]
     BufferTooLarge {
         /// Which buffer.
         what: &'static str,
         /// Bytes needed.
         needed: u64,
+        /// What the device calls the limit.
+        limit_name: &'static str,
         /// Bytes the device allows.
         limit: u64,
+    },
+    /// The world would take more storage buffers than can be bound at once.
+    #[error(
+        "the world, in windows of at most {window} bytes, takes {needed} storage buffers in one \
+         shader stage, more than this device's {limit_name} of {limit}: request a device with a \
+         higher limit or larger bindings, or draw a smaller world"
+    )]
+    TooManyWindows {
+        /// Bindings needed, those beside the world included.
+        needed: u32,
+        /// What the device calls the limit.
+        limit_name: &'static str,
+        /// Bindings the device allows.
+        limit: u32,
+        /// Bytes that a binding may have.
+        window: u64,
+    },
+    /// The world needs more windows than the renderer was made for.
+    #[error(
+        "{what} have outgrown the {windows} windows that this renderer was made for: make a new \
+         one with the WorldWindows of the world"
+    )]
+    WorldOutgrown {
+        /// Which array.
+        what: &'static str,
+        /// Windows that there are.
+        windows: usize,
+    },
+    /// The world has residuals, and the renderer was made for one that f32 holds.
+    #[error(
+        "this renderer was made for worlds that f32 holds, and this world has residuals: make a \
+         new one with the WorldWindows of the world"
+    )]
+    Residuals,
+    /// The device has no memory left.
+    #[error("no GPU memory for {what} of {bytes} bytes: draw less, or free some")]
+    NoMemory {
+        /// Which buffer.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
     },
     /// `prepare` before `upload_world`.
     #[error("no world was uploaded: call upload_world first")]
@@ -103,15 +150,13 @@ pub struct ViewUniform {
     forward: [f32; 3],
     width: f32,
     height: f32,
-    vertex_floats: u32,
-    unused: [f32; 2],
+    unused: [f32; 3],
     eye_residual: [f32; 3],
     padding: f32,
 }
 
-impl ViewUniform {
-    /// `vertex_floats`: f32 values of a vertex in the buffer of positions.
-    pub(crate) fn new(view: &View, vertex_floats: u32) -> Self {
+impl From<&View> for ViewUniform {
+    fn from(view: &View) -> Self {
         let [eye, eye_residual] = split(view.eye);
         Self {
             eye: eye.to_array(),
@@ -123,8 +168,7 @@ impl ViewUniform {
             forward: view.forward.to_array(),
             width: view.size[0] as f32,
             height: view.size[1] as f32,
-            vertex_floats,
-            unused: [0.0; 2],
+            unused: [0.0; 3],
             eye_residual: eye_residual.to_array(),
             padding: 0.0,
         }

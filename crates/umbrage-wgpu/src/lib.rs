@@ -6,7 +6,7 @@
 //! [`ShadowRenderer::record`] in the light pass).
 //!
 //! Requirements on the host's frame:
-//! - its depth pass computes clip positions with [`CLIP_WGSL`] from what [`world_wgsl`] reads,
+//! - its depth pass computes clip positions with [`CLIP_WGSL`] from what [`ShadowRenderer::world_wgsl`] reads,
 //!   reversed-Z, infinite far plane, compare `Greater`, `unclipped_depth` where depth clamping is
 //!   available, both sides of every triangle drawn;
 //! - the pass given to `record` has that depth (read only) and a stencil that is zero.
@@ -18,13 +18,16 @@ mod host;
 mod pipelines;
 mod receivers;
 mod renderer;
+mod split;
+mod windows;
 mod world;
 
-pub use buffers::check_storage;
+pub use buffers::{captured, check_storage};
 pub use faces::{CountStep, FaceOptions, VolumeFaces};
 pub use host::{Frame, RenderError, RendererOptions, Uploaded, ViewUniform, VolumeColor};
 pub use receivers::{Call, LightCalls};
 pub use renderer::{LIGHT_STENCIL, ShadowRenderer};
+pub use windows::WorldWindows;
 
 /// WGSL of `struct View` and `umbrage_clip`, for the host's own shaders. The layout of the
 /// uniform is [`ViewUniform`].
@@ -34,14 +37,6 @@ pub const CLIP_WGSL: &str = include_str!("shaders/clip.wgsl");
 /// [`CLIP_WGSL`], and reads [`ShadowRenderer::light_bind_group`] at bind group number `group`.
 pub fn light_wgsl(group: u32) -> String {
     include_str!("shaders/light.wgsl").replace("UMBRAGE_LIGHT_GROUP", &group.to_string())
-}
-
-/// WGSL through which shaders read the world: `umbrage_position(vertex)`, `umbrage_edge(edge)`,
-/// `umbrage_corner(corner)`, `umbrage_from_eye(vertex)` and more. Goes with [`CLIP_WGSL`], has the
-/// view as `umbrage_world_view`, and reads [`ShadowRenderer::world_bind_group`] at bind group number
-/// `group`.
-pub fn world_wgsl(group: u32) -> String {
-    include_str!("shaders/world.wgsl").replace("UMBRAGE_WORLD_GROUP", &group.to_string())
 }
 
 const VOLUME_WGSL: &str = include_str!("shaders/volume.wgsl");

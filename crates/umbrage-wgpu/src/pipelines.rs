@@ -8,17 +8,45 @@ use wgpu::{
     StencilFaceState, StencilOperation, StencilState,
 };
 
-use crate::{CLIP_WGSL, RendererOptions, VOLUME_WGSL, VolumeColor, world_wgsl};
+use crate::{CLIP_WGSL, RendererOptions, VOLUME_WGSL, VolumeColor};
 
 #[derive(Debug)]
 pub(crate) struct Pipelines {
-    pub(crate) zpass_sides: RenderPipeline,
-    pub(crate) zfail_sides: RenderPipeline,
-    pub(crate) zfail_caps: RenderPipeline,
-    pub(crate) zfail_reversed_caps: RenderPipeline,
+    /// Of lights that are drawn as a whole.
+    pub(crate) whole: Counters,
+    /// Of parts: seven bits count.
+    pub(crate) part: Counters,
+    /// Between parts; see [`PartPlan`](umbrage_core::frame::PartPlan).
+    pub(crate) join: RenderPipeline,
     pub(crate) clean: RenderPipeline,
     pub(crate) shared: Shared,
 }
+
+/// What counts volumes.
+#[derive(Debug)]
+pub(crate) struct Counters {
+    zpass_sides: RenderPipeline,
+    zfail_sides: RenderPipeline,
+    zfail_caps: RenderPipeline,
+    zfail_reversed_caps: RenderPipeline,
+}
+
+impl Counters {
+    /// Of sides, on the z-pass and on the z-fail path.
+    pub(crate) fn sides(&self) -> [&RenderPipeline; 2] {
+        [&self.zpass_sides, &self.zfail_sides]
+    }
+
+    /// Of caps taken as wound, and reversed.
+    pub(crate) fn caps(&self) -> [&RenderPipeline; 2] {
+        [&self.zfail_caps, &self.zfail_reversed_caps]
+    }
+}
+
+/// The bits of the stencil that count a part.
+pub(crate) const PART_BITS: u32 = 0x7f;
+/// The bit that remembers shadows of parts.
+pub(crate) const SHADOW_BIT: u32 = 0x80;
 
 /// What all pipelines of volumes are made from.
 #[derive(Debug)]
@@ -50,6 +78,8 @@ enum Counts {
     BehindReversed,
     /// Everywhere, to zero.
     Clean,
+    /// Where the bits of a part are not at the reference: they are set to it, and the shadow bit.
+    Join,
 }
 
 impl Pipelines {
@@ -57,12 +87,12 @@ impl Pipelines {
         device: &Device,
         options: &RendererOptions<'_>,
         layouts: [&BindGroupLayout; 2],
+        world_wgsl: &str,
     ) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage volume"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
-                "{CLIP_WGSL}\n{}\n{VOLUME_WGSL}",
-                world_wgsl(1)
+                "{CLIP_WGSL}\n{world_wgsl}\n{VOLUME_WGSL}"
             ))),
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -70,15 +100,22 @@ impl Pipelines {
             bind_group_layouts: &layouts.map(Some),
             immediate_size: 0,
         });
-        let build = |label, entry, counts| {
-            pipeline(device, options, &layout, &module, label, entry, counts)
+        let build = |label, entry, counts, bits| {
+            pipeline(
+                device, options, &layout, &module, label, entry, counts, bits,
+            )
+        };
+        let counters = |bits| Counters {
+            zpass_sides: build("umbrage z-pass sides", "side", Counts::InFront, bits),
+            zfail_sides: build("umbrage z-fail sides", "zfail_side", Counts::Behind, bits),
+            zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind, bits),
+            zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed, bits),
         };
         Self {
-            zpass_sides: build("umbrage z-pass sides", "side", Counts::InFront),
-            zfail_sides: build("umbrage z-fail sides", "zfail_side", Counts::Behind),
-            zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind),
-            zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed),
-            clean: build("umbrage clean", "everywhere", Counts::Clean),
+            whole: counters(0xff),
+            part: counters(PART_BITS),
+            join: build("umbrage join", "everywhere", Counts::Join, 0xff),
+            clean: build("umbrage clean", "everywhere", Counts::Clean, 0xff),
             shared: Shared {
                 module,
                 layout,
@@ -91,6 +128,7 @@ impl Pipelines {
     }
 }
 
+#[expect(clippy::too_many_arguments, reason = "two callers, one line each")]
 fn pipeline(
     device: &Device,
     options: &RendererOptions<'_>,
@@ -99,6 +137,7 @@ fn pipeline(
     label: &str,
     vertex_entry: &str,
     counts: Counts,
+    write_mask: u32,
 ) -> RenderPipeline {
     let face = |pass_op, depth_fail_op| StencilFaceState {
         compare: CompareFunction::Always,
@@ -106,15 +145,26 @@ fn pipeline(
         depth_fail_op,
         pass_op,
     };
-    use StencilOperation::{DecrementWrap, IncrementWrap, Keep, Zero};
+    use StencilOperation::{DecrementWrap, IncrementWrap, Keep, Replace, Zero};
     let (front, back) = match counts {
         Counts::InFront => (face(IncrementWrap, Keep), face(DecrementWrap, Keep)),
         Counts::Behind => (face(Keep, DecrementWrap), face(Keep, IncrementWrap)),
         Counts::BehindReversed => (face(Keep, IncrementWrap), face(Keep, DecrementWrap)),
         Counts::Clean => (face(Zero, Zero), face(Zero, Zero)),
+        Counts::Join => {
+            let join = StencilFaceState {
+                compare: CompareFunction::NotEqual,
+                ..face(Replace, Replace)
+            };
+            (join, join)
+        }
+    };
+    let read_mask = match counts {
+        Counts::Join => PART_BITS,
+        _ => 0xff,
     };
     let volume_color = match counts {
-        Counts::Clean => VolumeColor::None,
+        Counts::Clean | Counts::Join => VolumeColor::None,
         _ => options.volume_color,
     };
     // The pass has the host's colour targets; volumes leave them alone, but for debug views.
@@ -178,8 +228,8 @@ fn pipeline(
             stencil: StencilState {
                 front,
                 back,
-                read_mask: 0xff,
-                write_mask: 0xff,
+                read_mask,
+                write_mask,
             },
             bias: wgpu::DepthBiasState::default(),
         }),

@@ -7,18 +7,22 @@
 
 use std::borrow::Cow;
 use std::mem::offset_of;
+use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 use umbrage_core::cull::{Cull, Culls};
-use umbrage_core::frame::{LightPath, LightPlan};
+use umbrage_core::frame::{LightPath, LightPlan, PartPlan};
 use umbrage_core::{Light, LightShape, View};
 use wgpu::{
     BindGroup, BindGroupLayout, BindingType, Buffer, BufferBindingType, BufferUsages,
     ComputePipeline, Device, Queue, ShaderStages, TextureView,
 };
 
-use crate::buffers::{Growing, Written};
-use crate::{CLIP_WGSL, Frame, RenderError, world_wgsl};
+use crate::buffers::{Growing, Written, binding_limit};
+use crate::split::Split;
+use crate::windows::shift_of;
+use crate::world::WorldBuffers;
+use crate::{CLIP_WGSL, Frame, RenderError};
 
 /// The indirect calls of one light, as the shader writes them.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -32,7 +36,8 @@ pub struct LightCalls {
     pub reversed_caps: Call,
     /// The host's light draw: six vertices a row of tiles.
     pub light: Call,
-    /// The draw that zeroes the stencil: three vertices, if there is a volume.
+    /// The draw that zeroes the stencil: three vertices, if there is a volume. Of a light in parts
+    /// also the draw between them.
     pub clean: Call,
 }
 
@@ -91,16 +96,23 @@ pub(crate) struct Receivers {
     surface: ComputePipeline,
     light: ComputePipeline,
     layout: BindGroupLayout,
-    plan: Growing,
     tiles: Growing,
-    pub(crate) kept_quads: Growing,
-    pub(crate) calls: Growing,
+    pub(crate) kept_quads: Split,
+    /// A window of quads and caps each.
+    windows: Vec<Window>,
+}
+
+/// What the shader is told and says of the quads and caps in one window of their lists.
+#[derive(Debug)]
+struct Window {
+    plan: Growing,
+    calls: Growing,
 }
 
 /// What the shader reads and does not own.
 pub(crate) struct Inputs<'a> {
     pub(crate) world: &'a BindGroup,
-    pub(crate) quads: &'a Buffer,
+    pub(crate) quads: &'a Split,
     pub(crate) spans: &'a Buffer,
     pub(crate) depth: &'a TextureView,
 }
@@ -110,24 +122,24 @@ impl Receivers {
     pub(crate) fn new(
         device: &Device,
         sample_count: u32,
-        world_layout: &BindGroupLayout,
-    ) -> Option<Self> {
+        world: &WorldBuffers,
+    ) -> Result<Option<Self>, RenderError> {
         let features = device.features();
         if sample_count != 1 || !features.contains(wgpu::Features::INDIRECT_FIRST_INSTANCE) {
-            return None;
+            return Ok(None);
         }
         let layout = bind_group_layout(device);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage receivers"),
             source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
                 "{CLIP_WGSL}\n{}\n{}",
-                world_wgsl(1),
+                world.wgsl(1),
                 include_str!("shaders/receivers.wgsl")
             ))),
         });
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("umbrage receivers"),
-            bind_group_layouts: &[Some(&layout), Some(world_layout)],
+            bind_group_layouts: &[Some(&layout), Some(&world.layout)],
             immediate_size: 0,
         });
         let pipeline = |entry| {
@@ -140,16 +152,21 @@ impl Receivers {
                 cache: None,
             })
         };
-        let read = BufferUsages::COPY_SRC;
-        Some(Self {
+        let bytes = list_window(device) * 4;
+        let none = BufferUsages::empty();
+        Ok(Some(Self {
             surface: pipeline("surface"),
             light: pipeline("light"),
             layout,
-            plan: Growing::new(device, "umbrage plan", BufferUsages::empty()),
-            tiles: Growing::new(device, "umbrage tiles", BufferUsages::empty()),
-            kept_quads: Growing::new(device, "umbrage kept quads", BufferUsages::empty()),
-            calls: Growing::new(device, "umbrage calls", BufferUsages::INDIRECT | read),
-        })
+            tiles: Growing::new(device, "umbrage tiles", none)?,
+            kept_quads: Split::open(device, "umbrage kept quads", bytes, none)?,
+            windows: Vec::new(),
+        }))
+    }
+
+    /// Of each window, the calls of each light.
+    pub(crate) fn calls(&self) -> impl Iterator<Item = &Buffer> {
+        self.windows.iter().map(|window| &window.calls.buffer)
     }
 
     /// Makes room, uploads the plan; the buffers' names change where `replaced` says so.
@@ -159,23 +176,41 @@ impl Receivers {
         queue: &Queue,
         frame: &Frame<'_>,
     ) -> Result<Written, RenderError> {
-        let lights = frame.lights.iter().zip(&frame.plan.lights);
-        let mut uniforms: Vec<PlanUniform> = lights
-            .map(|(light, plan)| PlanUniform::new(light, plan, frame.culls))
-            .collect();
-        if uniforms.is_empty() {
-            uniforms.push(PlanUniform::default());
-        }
+        let quads = size_of_val(&frame.volumes.quads[..]);
+        let mut written = self.kept_quads.reserve(device, quads)?;
         let [columns, rows] = frame.view.size.map(|side| u64::from(side.div_ceil(TILE)));
-        let mut written = self
-            .plan
-            .write(device, queue, bytemuck::cast_slice(&uniforms))?;
         written.replaced |= self.tiles.reserve(device, columns * rows * 32)?;
-        written.replaced |= self
-            .kept_quads
-            .reserve(device, 4 * frame.volumes.quads.len() as u64)?;
-        let calls = uniforms.len() as u64 * LightCalls::SIZE;
-        written.replaced |= self.calls.reserve(device, calls)?;
+        let items = list_window(device);
+        let longest = frame.volumes.quads.len().max(frame.plan.caps.len());
+        let count = longest.div_ceil(items).max(1);
+        self.windows.truncate(count);
+        for number in 0..count {
+            if number == self.windows.len() {
+                let usage = BufferUsages::INDIRECT | BufferUsages::COPY_SRC;
+                self.windows.push(Window {
+                    plan: Growing::new(device, "umbrage plan", BufferUsages::empty())?,
+                    calls: Growing::new(device, "umbrage calls", usage)?,
+                });
+            }
+            let lights = frame.lights.iter().zip(&frame.plan.lights);
+            let within = |range: &Range<u32>| within(range, number, items);
+            let mut uniforms: Vec<PlanUniform> = lights
+                .map(|(light, plan)| {
+                    PlanUniform::new(light, plan, plan.parts.first(), frame.culls, within)
+                })
+                .collect();
+            uniforms.extend(frame.plan.further_parts().map(|(number, part)| {
+                let (light, plan) = (&frame.lights[number], &frame.plan.lights[number]);
+                PlanUniform::new(light, plan, Some(part), frame.culls, within)
+            }));
+            if uniforms.is_empty() {
+                uniforms.push(PlanUniform::default());
+            }
+            let Window { plan, calls } = &mut self.windows[number];
+            written += plan.write(device, queue, bytemuck::cast_slice(&uniforms))?;
+            let bytes = uniforms.len() as u64 * LightCalls::SIZE;
+            written.replaced |= calls.reserve(device, bytes)?;
+        }
         Ok(written)
     }
 
@@ -188,17 +223,40 @@ impl Receivers {
         lights: u32,
         timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'_>>,
     ) {
+        let mut bind_groups = (0..self.windows.len())
+            .map(|number| self.bind(device, inputs, number, lights))
+            .peekable();
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("umbrage receivers"),
+            timestamp_writes,
+        });
+        pass.set_bind_group(1, inputs.world, &[]);
+        pass.set_pipeline(&self.surface);
+        pass.set_bind_group(0, bind_groups.peek(), &[]);
+        let [columns, rows] = size.map(|side| side.div_ceil(TILE * 8));
+        pass.dispatch_workgroups(columns, rows, 1);
+        pass.set_pipeline(&self.light);
+        let columns = lights.min(1 << 15);
+        for bind_group in bind_groups {
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.dispatch_workgroups(columns, lights.div_ceil(columns.max(1)), 1);
+        }
+    }
+
+    /// For the quads in window `number`.
+    fn bind(&self, device: &Device, inputs: &Inputs<'_>, number: usize, lights: u32) -> BindGroup {
+        let Window { plan, calls } = &self.windows[number];
         let plan = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &self.plan.buffer,
+            buffer: &plan.buffer,
             offset: 0,
             size: wgpu::BufferSize::new(u64::from(lights) * size_of::<PlanUniform>() as u64),
         });
         let resources = [
-            inputs.quads.as_entire_binding(),
+            inputs.quads.buffer(number).as_entire_binding(),
             plan,
             self.tiles.buffer.as_entire_binding(),
-            self.kept_quads.buffer.as_entire_binding(),
-            self.calls.buffer.as_entire_binding(),
+            self.kept_quads.buffer(number).as_entire_binding(),
+            calls.buffer.as_entire_binding(),
             wgpu::BindingResource::TextureView(inputs.depth),
             inputs.spans.as_entire_binding(),
         ];
@@ -206,30 +264,44 @@ impl Receivers {
             .zip(resources)
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("umbrage receivers"),
             layout: &self.layout,
             entries: &entries,
-        });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("umbrage receivers"),
-            timestamp_writes,
-        });
-        pass.set_bind_group(0, &bind_group, &[]);
-        pass.set_bind_group(1, inputs.world, &[]);
-        pass.set_pipeline(&self.surface);
-        let [columns, rows] = size.map(|side| side.div_ceil(TILE * 8));
-        pass.dispatch_workgroups(columns, rows, 1);
-        pass.set_pipeline(&self.light);
-        let columns = lights.min(1 << 15);
-        pass.dispatch_workgroups(columns, lights.div_ceil(columns.max(1)), 1);
+        })
     }
 }
 
+/// Quads or caps that a window of their list holds.
+pub(crate) fn list_window(device: &Device) -> usize {
+    1 << shift_of(binding_limit(&device.limits()).0, 4)
+}
+
+/// What of a range of quads or caps lies in window `number`, counted from the window's start.
+pub(crate) fn within(range: &Range<u32>, number: usize, items: usize) -> Range<u32> {
+    let from = |at: u32| (at as usize).clamp(number * items, (number + 1) * items);
+    let counted = |at| (from(at) - number * items) as u32;
+    counted(range.start)..counted(range.end)
+}
+
 impl PlanUniform {
-    fn new(light: &Light, plan: &LightPlan, culls: Culls) -> Self {
+    /// Of a light, or of a part of it; `within` cuts ranges to a window.
+    fn new(
+        light: &Light,
+        plan: &LightPlan,
+        part: Option<&PartPlan>,
+        culls: Culls,
+        within: impl Fn(&Range<u32>) -> Range<u32>,
+    ) -> Self {
         let s = plan.scissor;
-        let ends = |r: &std::ops::Range<u32>| [r.start, r.end];
+        let [quads, caps, reversed_caps] = match part {
+            Some(part) => [&part.quads, &part.caps, &part.reversed_caps],
+            None => [&plan.quads, &plan.caps, &plan.reversed_caps],
+        };
+        let ends = |range| {
+            let Range { start, end } = within(range);
+            [start, end]
+        };
         let path = match plan.path {
             LightPath::Skipped(_) => 0,
             LightPath::ZPass { .. } => 1,
@@ -255,11 +327,14 @@ impl PlanUniform {
                 (s.x + s.width).div_ceil(TILE),
                 (s.y + s.height).div_ceil(TILE),
             ],
-            quads: ends(&plan.quads),
-            caps: ends(&plan.caps),
-            reversed_caps: ends(&plan.reversed_caps),
+            quads: ends(quads),
+            caps: ends(caps),
+            reversed_caps: ends(reversed_caps),
             range: light.range.min(FARTHEST),
-            path: path | unasked(Cull::Receivers, 4) | unasked(Cull::Quads, 8),
+            path: path
+                | unasked(Cull::Receivers, 4)
+                | unasked(Cull::Quads, 8)
+                | if part.is_some() { 16 } else { 0 },
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use umbrage_core::Light;
 use umbrage_core::cull::Cull;
-use umbrage_core::frame::{Extrusion, FramePlan, LightPath, LightPlan};
+use umbrage_core::frame::{Extrusion, FramePlan, LightPath, LightPlan, PartPlan};
 use umbrage_core::volume::Version;
 use umbrage_core::world::World;
 use wgpu::{
@@ -13,8 +13,10 @@ use wgpu::{
 
 use crate::buffers::Growing;
 use crate::host::{Frame, RenderError, RendererOptions, Uploaded, ViewUniform};
-use crate::pipelines::Pipelines;
-use crate::receivers::{Inputs, LightCalls, Receivers, tile_rows};
+use crate::pipelines::{Pipelines, SHADOW_BIT};
+use crate::receivers::{Inputs, LightCalls, Receivers, list_window, tile_rows, within};
+use crate::split::Split;
+use crate::windows::WorldWindows;
 use crate::world::WorldBuffers;
 
 /// The stencil state of a host's light draw: passes where lit, and leaves zero behind.
@@ -32,18 +34,21 @@ pub struct ShadowRenderer {
     layout: BindGroupLayout,
     view: Buffer,
     view_size: [u32; 2],
-    quads: Growing,
+    quads: Split,
     /// Which quads that buffer holds.
     quads_version: Version,
-    caps: Growing,
+    caps: Split,
+    /// Quads or caps that one window of their lists holds.
+    list_window: usize,
     lights: Growing,
     /// How far each is extruded; unused if the renderer was made for infinite volumes.
     distances: Growing,
     extrusion: Extrusion,
+    /// Lights, and parts beyond the first of each.
     light_count: u32,
     world: WorldBuffers,
-    /// With all quads, and with those that the receivers keep.
-    bind_groups: Option<[BindGroup; 2]>,
+    /// With all quads, and with those that the receivers keep; of each window of quads and caps.
+    bind_groups: Option<[Vec<BindGroup>; 2]>,
     receivers: Option<Receivers>,
     found: Found,
     /// Where lights are drawn: `UmbrageSpans` of the shaders.
@@ -51,6 +56,24 @@ pub struct ShadowRenderer {
     light_layout: BindGroupLayout,
     light_bind_group: Option<BindGroup>,
     depth_stencil_format: TextureFormat,
+}
+
+/// The quads and caps of one light or part.
+struct Draws<'a> {
+    /// Of its calls, and the instance it is drawn as.
+    number: u32,
+    quads: &'a std::ops::Range<u32>,
+    caps: [&'a std::ops::Range<u32>; 2],
+}
+
+impl<'a> Draws<'a> {
+    fn of_part(part: &'a PartPlan) -> Self {
+        Self {
+            number: part.number,
+            quads: &part.quads,
+            caps: [&part.caps, &part.reversed_caps],
+        }
+    }
 }
 
 /// How far the receivers of this frame are known.
@@ -71,10 +94,12 @@ impl ShadowRenderer {
             return Err(RenderError::NoStencil(options.depth_stencil_format));
         }
         let layout = bind_group_layout(device);
-        let world = WorldBuffers::new(device);
+        let world = WorldBuffers::new(device, options.windows)?;
+        let list_window = list_window(device);
+        let list = |label| Split::open(device, label, 4 * list_window, BufferUsages::empty());
         let growing = |label| Growing::new(device, label, BufferUsages::empty());
         Ok(Self {
-            pipelines: Pipelines::new(device, options, [&layout, &world.layout]),
+            pipelines: Pipelines::new(device, options, [&layout, &world.layout], &world.wgsl(1)),
             view: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("umbrage view"),
                 size: size_of::<ViewUniform>() as u64,
@@ -82,19 +107,20 @@ impl ShadowRenderer {
                 mapped_at_creation: false,
             }),
             view_size: [0; 2],
-            quads: growing("umbrage quads"),
+            quads: list("umbrage quads")?,
             quads_version: Version::default(),
-            caps: growing("umbrage caps"),
-            lights: growing("umbrage lights"),
-            distances: growing("umbrage distances"),
+            caps: list("umbrage caps")?,
+            list_window,
+            lights: growing("umbrage lights")?,
+            distances: growing("umbrage distances")?,
             extrusion: options.extrusion,
             light_count: 0,
             bind_groups: None,
             layout,
-            receivers: Receivers::new(device, options.sample_count, &world.layout),
+            receivers: Receivers::new(device, options.sample_count, &world)?,
             world,
             found: Found::No,
-            spans: growing("umbrage spans"),
+            spans: growing("umbrage spans")?,
             light_layout: light_layout(device),
             light_bind_group: None,
             depth_stencil_format: options.depth_stencil_format,
@@ -125,12 +151,18 @@ impl ShadowRenderer {
         if !self.world.is_filled() {
             return Err(RenderError::NoWorld);
         }
-        let homogeneous: Vec<[[f32; 4]; 2]> =
+        let mut homogeneous: Vec<[[f32; 4]; 2]> =
             frame.lights.iter().map(Light::homogeneous_f32).collect();
-        let view = ViewUniform::new(frame.view, self.world.vertex_floats());
+        let further: Vec<usize> = frame.plan.further_parts().map(|(light, _)| light).collect();
+        homogeneous.extend(
+            further
+                .iter()
+                .map(|&light| frame.lights[light].homogeneous_f32()),
+        );
+        let view = ViewUniform::from(frame.view);
         queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
         self.view_size = frame.view.size;
-        self.light_count = frame.lights.len().min(frame.plan.lights.len()) as u32;
+        self.light_count = (frame.lights.len().min(frame.plan.lights.len()) + further.len()) as u32;
         let quads = &frame.volumes.quads;
         let item = size_of_val(&quads[..])
             .checked_div(quads.len())
@@ -148,7 +180,9 @@ impl ShadowRenderer {
         let points = bytemuck::cast_slice(&homogeneous);
         let mut others = self.lights.write(device, queue, points)?;
         if self.extrusion != Extrusion::Infinite {
-            let distances: Vec<f32> = frame.plan.lights.iter().map(shader_distance).collect();
+            let lights = &frame.plan.lights;
+            let further = further.iter().map(|&light| &lights[light]);
+            let distances: Vec<f32> = lights.iter().chain(further).map(shader_distance).collect();
             let distances = bytemuck::cast_slice(&distances);
             others += self.distances.write(device, queue, distances)?;
         }
@@ -167,7 +201,12 @@ impl ShadowRenderer {
         if self.bind_groups.is_none() {
             let kept = self.receivers.as_ref().map(|r| &r.kept_quads);
             let quads = [&self.quads, kept.unwrap_or(&self.quads)];
-            self.bind_groups = Some(quads.map(|quads| self.bind(device, &quads.buffer)));
+            let windows = self.quads.buffers().len().max(self.caps.buffers().len());
+            let bind = |quads: &Split| -> Vec<BindGroup> {
+                let each = (0..windows).map(|number| self.bind(device, quads, number));
+                each.collect()
+            };
+            self.bind_groups = Some(quads.map(bind));
         }
         Ok(Uploaded {
             volume_bytes: volumes.bytes,
@@ -175,9 +214,10 @@ impl ShadowRenderer {
         })
     }
 
-    fn bind(&self, device: &Device, quads: &Buffer) -> BindGroup {
-        let [caps, lights, distances] =
-            [&self.caps, &self.lights, &self.distances].map(|growing| &growing.buffer);
+    /// For the quads and caps in window `number` of their lists.
+    fn bind(&self, device: &Device, quads: &Split, number: usize) -> BindGroup {
+        let [lights, distances] = [&self.lights, &self.distances].map(|growing| &growing.buffer);
+        let (quads, caps) = (quads.buffer(number), self.caps.buffer(number));
         let buffers = [(0, quads), (1, caps), (2, lights), (3, distances)];
         let entries = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding,
@@ -231,7 +271,7 @@ impl ShadowRenderer {
         };
         let inputs = Inputs {
             world,
-            quads: &self.quads.buffer,
+            quads: &self.quads,
             spans: &self.spans.buffer,
             depth,
         };
@@ -254,8 +294,6 @@ impl ShadowRenderer {
         let (Some(bind_groups), Some(world)) = (&self.bind_groups, &self.world.bind_group) else {
             return;
         };
-        let calls = self.calls();
-        let bind_group = &bind_groups[usize::from(calls.is_some())];
         let end = lights.end.min(plan.lights.len());
         let of_range = lights.start.min(end)..end;
         for (number, light) in of_range.clone().zip(&plan.lights[of_range]) {
@@ -264,29 +302,54 @@ impl ShadowRenderer {
             }
             let s = light.scissor;
             pass.set_scissor_rect(s.x, s.y, s.width, s.height);
-            let p = &self.pipelines;
-            let sides = [&p.zpass_sides, &p.zfail_sides];
-            let counted = self.draw_volume(
-                pass,
-                number,
-                light,
-                sides,
-                [&p.zfail_caps, &p.zfail_reversed_caps],
-            );
+            let counted = match light.parts.is_empty() {
+                true => {
+                    let counters = &self.pipelines.whole;
+                    self.draw_volume(pass, number, light, counters.sides(), counters.caps())
+                }
+                false => {
+                    self.draw_parts(pass, number, light);
+                    true
+                }
+            };
             pass.set_stencil_reference(u32::from(light.stencil_reference));
             draw_light(pass, number, light);
-            if let Some(calls) = calls.filter(|_| counted) {
+            if let Some(calls) = self.calls().filter(|_| counted) {
                 pass.set_pipeline(&self.pipelines.clean);
-                pass.set_bind_group(0, bind_group, &[]);
+                pass.set_bind_group(0, &bind_groups[1][0], &[]);
                 pass.set_bind_group(1, world, &[]);
-                pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
+                for calls in calls {
+                    pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
+                }
             }
         }
     }
 
-    /// Draws a light's quads and caps over the scissor that is set, with `sides` for z-pass and for
-    /// z-fail, and `caps` for triangles taken as wound and for those taken reversed; false if it has
-    /// none.
+    /// Counts a light's parts in the stencil, one after the other.
+    fn draw_parts(&self, pass: &mut RenderPass<'_>, number: usize, light: &LightPlan) {
+        let counters = &self.pipelines.part;
+        for (i, part) in light.parts.iter().enumerate() {
+            let draws = Draws::of_part(part);
+            self.draw(pass, &draws, light.path, counters.sides(), counters.caps());
+            if i + 1 == light.parts.len() {
+                break;
+            }
+            pass.set_pipeline(&self.pipelines.join);
+            pass.set_stencil_reference(SHADOW_BIT | u32::from(part.reference));
+            match self.calls() {
+                // Whoever joins twice changes nothing the second time.
+                Some(calls) => {
+                    let at = number as u64 * LightCalls::SIZE + LightCalls::CLEAN;
+                    calls.for_each(|calls| pass.draw_indirect(calls, at));
+                }
+                None => pass.draw(0..3, 0..1),
+            }
+        }
+    }
+
+    /// Draws a light's quads and caps over the scissor that is set, those of all its parts alike,
+    /// with `sides` for z-pass and for z-fail, and `caps` for triangles taken as wound and for those
+    /// taken reversed; false if it has none.
     pub(crate) fn draw_volume(
         &self,
         pass: &mut RenderPass<'_>,
@@ -295,35 +358,66 @@ impl ShadowRenderer {
         sides: [&wgpu::RenderPipeline; 2],
         caps: [&wgpu::RenderPipeline; 2],
     ) -> bool {
+        if light.parts.is_empty() {
+            let draws = Draws {
+                number: number as u32,
+                quads: &light.quads,
+                caps: [&light.caps, &light.reversed_caps],
+            };
+            return self.draw(pass, &draws, light.path, sides, caps);
+        }
+        let mut counted = false;
+        for part in &light.parts {
+            counted |= self.draw(pass, &Draws::of_part(part), light.path, sides, caps);
+        }
+        counted
+    }
+
+    fn draw(
+        &self,
+        pass: &mut RenderPass<'_>,
+        draws: &Draws<'_>,
+        path: LightPath,
+        sides: [&wgpu::RenderPipeline; 2],
+        caps: [&wgpu::RenderPipeline; 2],
+    ) -> bool {
         let (Some(bind_groups), Some(world)) = (&self.bind_groups, &self.world.bind_group) else {
             return false;
         };
-        let calls = self.calls();
-        let bind_group = &bind_groups[usize::from(calls.is_some())];
-        let sides = match light.path {
+        let calls: Option<Vec<&Buffer>> = self.calls().map(Iterator::collect);
+        let bind_groups = &bind_groups[usize::from(calls.is_some())];
+        let sides = match path {
             LightPath::ZPass { .. } => sides[0],
             _ => sides[1],
         };
         let mut counted = false;
+        // Whatever is drawn next has its bind groups set.
+        pass.set_bind_group(0, &bind_groups[0], &[]);
+        pass.set_bind_group(1, world, &[]);
         for (range, pipeline, offset) in [
-            (&light.quads, sides, LightCalls::SIDES),
-            (&light.caps, caps[0], LightCalls::CAPS),
-            (&light.reversed_caps, caps[1], LightCalls::REVERSED_CAPS),
+            (draws.quads, sides, LightCalls::SIDES),
+            (draws.caps[0], caps[0], LightCalls::CAPS),
+            (draws.caps[1], caps[1], LightCalls::REVERSED_CAPS),
         ] {
             if range.is_empty() {
                 continue;
             }
             counted = true;
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, bind_group, &[]);
-            pass.set_bind_group(1, world, &[]);
-            match calls {
-                Some(calls) => {
-                    pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + offset);
-                }
-                None => {
-                    let instance = number as u32..number as u32 + 1;
-                    pass.draw(6 * range.start..6 * range.end, instance);
+            let first = range.start as usize / self.list_window;
+            let last = (range.end as usize - 1) / self.list_window;
+            for (window, bind_group) in (first..=last).zip(&bind_groups[first..]) {
+                pass.set_bind_group(0, bind_group, &[]);
+                match &calls {
+                    Some(calls) => {
+                        let at = u64::from(draws.number) * LightCalls::SIZE + offset;
+                        pass.draw_indirect(calls[window], at);
+                    }
+                    None => {
+                        let range = within(range, window, self.list_window);
+                        let instance = draws.number..draws.number + 1;
+                        pass.draw(6 * range.start..6 * range.end, instance);
+                    }
                 }
             }
         }
@@ -335,7 +429,7 @@ impl ShadowRenderer {
     /// `umbrage_light_corner` of [`light_wgsl`](crate::light_wgsl), as a list of counter-clockwise
     /// triangles. Draws nothing if the light reaches no visible surface.
     pub fn draw_light(&self, pass: &mut RenderPass<'_>, light: usize) {
-        match self.calls() {
+        match self.calls().and_then(|mut calls| calls.next()) {
             Some(calls) => {
                 pass.draw_indirect(calls, light as u64 * LightCalls::SIZE + LightCalls::LIGHT);
             }
@@ -354,11 +448,13 @@ impl ShadowRenderer {
         self.light_bind_group.as_ref()
     }
 
-    /// The [`LightCalls`] of this frame, one a light, if receivers were found; entries of lights
-    /// that the plan skips mean nothing.
-    pub fn calls(&self) -> Option<&Buffer> {
+    /// The [`LightCalls`] of this frame, one a light and then one a further part, if receivers were
+    /// found; entries of lights that the plan skips mean nothing. Where quads or caps are more than
+    /// one binding holds, there is a buffer for each window of them: sides and caps are those in the window, all else is the
+    /// same in each.
+    pub fn calls(&self) -> Option<impl Iterator<Item = &Buffer>> {
         let receivers = self.receivers.as_ref()?;
-        (self.found == Found::Yes).then_some(&receivers.calls.buffer)
+        (self.found == Found::Yes).then(|| receivers.calls())
     }
 
     /// Depth and stencil state for the host's light draws: passes where the light's volume left
@@ -378,12 +474,25 @@ impl ShadowRenderer {
         }
     }
 
-    /// Layout of what [`world_wgsl`](crate::world_wgsl) reads, in vertex and compute shaders.
+    /// WGSL through which shaders read the world: `umbrage_position(vertex)`, `umbrage_edge(edge)`,
+    /// `umbrage_corner(corner)`, `umbrage_from_eye(vertex)` and more. Goes with
+    /// [`CLIP_WGSL`](crate::CLIP_WGSL), has the view as `umbrage_world_view`, and reads
+    /// [`ShadowRenderer::world_bind_group`] at bind group number `group`.
+    pub fn world_wgsl(&self, group: u32) -> String {
+        self.world.wgsl(group)
+    }
+
+    /// In how many windows the world is.
+    pub fn world_windows(&self) -> WorldWindows {
+        self.world.windows
+    }
+
+    /// Layout of what [`ShadowRenderer::world_wgsl`] reads, in vertex and compute shaders.
     pub fn world_bind_group_layout(&self) -> &BindGroupLayout {
         &self.world.layout
     }
 
-    /// What [`world_wgsl`](crate::world_wgsl) reads, for the host's depth pass: the world, and the
+    /// What [`ShadowRenderer::world_wgsl`] reads, for the host's depth pass: the world, and the
     /// view of the last [`ShadowRenderer::prepare`]. `None` before
     /// [`ShadowRenderer::upload_world`], which may replace it.
     pub fn world_bind_group(&self) -> Option<&BindGroup> {

@@ -4,21 +4,24 @@ use std::ops::Range;
 
 use glam::Vec3;
 use umbrage_core::world::{Extent, World};
-use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, Device, Queue, ShaderStages};
+use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, ShaderStages};
 
 use crate::RenderError;
-use crate::buffers::{Growing, Written};
+use crate::buffers::Written;
+use crate::split::Split;
+use crate::windows::{Windows, WorldWindows};
 
 #[derive(Debug)]
 pub(crate) struct WorldBuffers {
-    /// Tightly packed f32 triples; of a world with residuals, two a vertex.
-    positions: Growing,
-    /// Positions and residuals of a world that has residuals, as uploaded.
+    pub(crate) windows: WorldWindows,
+    /// Tightly packed f32 triples; with residuals, two a vertex.
+    positions: Split,
+    /// Positions and residuals as uploaded, if there are residuals.
     both: Vec<[Vec3; 2]>,
     /// u32 pairs.
-    edges: Growing,
+    edges: Split,
     /// u32 triples.
-    triangles: Growing,
+    triangles: Split,
     pub(crate) layout: BindGroupLayout,
     /// Of these buffers and a view, for `world.wgsl`.
     pub(crate) bind_group: Option<BindGroup>,
@@ -44,17 +47,32 @@ struct SeenObject {
 }
 
 impl WorldBuffers {
-    pub(crate) fn new(device: &Device) -> Self {
-        let buffer = |label| Growing::new(device, label, BufferUsages::empty());
-        Self {
-            positions: buffer("umbrage positions"),
+    pub(crate) fn new(device: &Device, windows: WorldWindows) -> Result<Self, RenderError> {
+        let split = |label, windows: Windows, item| {
+            let size = windows.items().map(|items| items * item);
+            Split::fixed(device, label, windows.count, size)
+        };
+        Ok(Self {
+            positions: split(
+                "umbrage positions",
+                windows.positions,
+                windows.vertex_bytes(),
+            )?,
             both: Vec::new(),
-            edges: buffer("umbrage edges"),
-            triangles: buffer("umbrage triangles"),
-            layout: layout(device),
+            edges: split("umbrage edges", windows.edges, 8)?,
+            triangles: split("umbrage triangles", windows.corners, 4)?,
+            layout: layout(device, &windows),
+            windows,
             bind_group: None,
             seen: Seen::default(),
-        }
+        })
+    }
+
+    /// `world.wgsl` for these windows, in bind group `group`.
+    pub(crate) fn wgsl(&self, group: u32) -> String {
+        let shared = include_str!("shaders/world.wgsl");
+        let shared = shared.replace("UMBRAGE_WORLD_GROUP", &group.to_string());
+        format!("{}\n{shared}", self.windows.wgsl(group))
     }
 
     /// Whether a world was uploaded.
@@ -62,15 +80,15 @@ impl WorldBuffers {
         self.seen.stamp != 0
     }
 
-    /// f32 values a vertex.
-    pub(crate) fn vertex_floats(&self) -> u32 {
-        if self.both.is_empty() { 3 } else { 6 }
-    }
-
     /// What the three take.
     pub(crate) fn bytes(&self) -> u64 {
+        self.buffers().map(Buffer::size).sum()
+    }
+
+    /// As the layout has them.
+    fn buffers(&self) -> impl Iterator<Item = &Buffer> {
         let arrays = [&self.positions, &self.edges, &self.triangles];
-        arrays.map(|b| b.buffer.size()).iter().sum()
+        arrays.into_iter().flat_map(Split::buffers)
     }
 
     /// Brings the buffers up to date with the world; true if the bind group, which has `view`, is
@@ -93,9 +111,8 @@ impl WorldBuffers {
     }
 
     fn bind(&self, device: &Device, view: &Buffer) -> BindGroup {
-        let arrays = [&self.positions, &self.edges, &self.triangles].map(|b| &b.buffer);
         let entries: Vec<_> = (0..)
-            .zip(std::iter::once(view).chain(arrays))
+            .zip(std::iter::once(view).chain(self.buffers()))
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
                 binding,
                 resource: buffer.as_entire_binding(),
@@ -122,9 +139,12 @@ impl WorldBuffers {
             world.edges.vertices.len() as u32,
             world.triangles.len() as u32,
         ];
+        if !self.windows.residuals && !world.residuals.is_empty() {
+            return Err(RenderError::Residuals);
+        }
         // Until all is written, the buffers hold no world.
         let mut seen = std::mem::take(&mut self.seen);
-        if seen.fixed != world.fixed_stamp || self.both.is_empty() != world.residuals.is_empty() {
+        if seen.fixed != world.fixed_stamp {
             seen = Seen::default();
         }
         let grown = |i: usize| seen.lengths[i].min(lengths[i])..lengths[i];
@@ -146,18 +166,20 @@ impl WorldBuffers {
             };
         }
         let mut written = Written::default();
-        self.both.resize(world.residuals.len(), [Vec3::ZERO; 2]);
-        let (bytes, item) = if world.residuals.is_empty() {
-            (bytemuck::cast_slice(&world.positions), 12)
-        } else {
-            for v in positions.iter().cloned().flatten().map(|v| v as usize) {
-                self.both[v] = [world.positions[v], world.residuals[v]];
+        let bytes = if self.windows.residuals {
+            self.both.resize(world.positions.len(), [Vec3::ZERO; 2]);
+            for v in positions.iter().cloned().flatten() {
+                let residual = world.places().residual(v);
+                self.both[v as usize] = [world.positions[v as usize], residual];
             }
-            (bytemuck::cast_slice(&self.both), 24)
+            bytemuck::cast_slice(&self.both)
+        } else {
+            bytemuck::cast_slice(&world.positions)
         };
-        written +=
-            self.positions
-                .write_changed(device, queue, bytes, in_bytes(&positions, item))?;
+        let vertices = in_bytes(&positions, self.windows.vertex_bytes());
+        written += self
+            .positions
+            .write_changed(device, queue, bytes, vertices)?;
         let bytes = bytemuck::cast_slice(&world.edges.vertices);
         written += self
             .edges
@@ -178,16 +200,19 @@ impl WorldBuffers {
 
 /// What `world.wgsl` declares. Compute shaders read no triangles: with these they would pass the
 /// eight storage buffers that every device has.
-fn layout(device: &Device) -> BindGroupLayout {
+fn layout(device: &Device, windows: &WorldWindows) -> BindGroupLayout {
     let storage = wgpu::BufferBindingType::Storage { read_only: true };
     let everywhere = ShaderStages::VERTEX | ShaderStages::COMPUTE;
+    let mut types = vec![(wgpu::BufferBindingType::Uniform, everywhere)];
+    for (array, stages) in [
+        (windows.positions, everywhere),
+        (windows.edges, everywhere),
+        (windows.corners, ShaderStages::VERTEX),
+    ] {
+        types.extend((0..array.count).map(|_| (storage, stages)));
+    }
     let entries: Vec<_> = (0..)
-        .zip([
-            (wgpu::BufferBindingType::Uniform, everywhere),
-            (storage, everywhere),
-            (storage, everywhere),
-            (storage, ShaderStages::VERTEX),
-        ])
+        .zip(types)
         .map(|(binding, (ty, visibility))| wgpu::BindGroupLayoutEntry {
             binding,
             visibility,

@@ -58,7 +58,7 @@
 //! # In a frame: volumes to a shadow mask
 //!
 //! The host owns device, queue, encoder and depth buffer. Its depth pass computes clip positions
-//! with [`CLIP_WGSL`] from what [`world_wgsl`] reads ([`ShadowRenderer::world_bind_group`]), so that
+//! with [`CLIP_WGSL`] from what [`ShadowRenderer::world_wgsl`] reads ([`ShadowRenderer::world_bind_group`]), so that
 //! depth agrees with the volumes to the last bit. Then, in one pass for all lights:
 //!
 //! ```no_run
@@ -103,6 +103,6 @@ pub use umbrage_core::world::{
 pub use umbrage_core::{Casting, Cull, Culls, Fingerprint, Light, LightShape, Mesh, View};
 pub use umbrage_wgpu::{
     CLIP_WGSL, Call, CountStep, FaceOptions, Frame, LIGHT_STENCIL, LightCalls, RenderError,
-    RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces,
-    check_storage, light_wgsl, world_wgsl,
+    RendererOptions, ShadowRenderer, Uploaded, ViewUniform, VolumeColor, VolumeFaces, WorldWindows,
+    captured, check_storage, light_wgsl,
 };

@@ -13,8 +13,9 @@ use umbrage_truth::{Mask, Oracle, Verdicts};
 use crate::args::{CheckArgs, Shadows};
 use crate::error::CliError;
 use crate::progress::Bar;
-use crate::report::{CheckReport, LightsByPath, WorstPixel};
+use crate::report::{CheckReport, LightLayers, LightsByPath, WorstPixel};
 use crate::setting::Setting;
+use crate::verbs::render::in_parts;
 use umbrage_report::Table;
 
 /// Loads, draws masks, judges them; a wrong pixel-light fails a method that promises there is none.
@@ -94,6 +95,13 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
         y: worst.y,
         light: lights[worst.light as usize].name.clone(),
     });
+    let volumes = lab.volumes.lights.iter().zip(&skipped);
+    let layers: Vec<(u64, u64, bool)> = volumes
+        .map(|(volume, &skipped)| {
+            let parts = volume.parts.len().max(1) as u64;
+            (u64::from(volume.layers_bound), parts, skipped)
+        })
+        .collect();
     Ok(CheckReport {
         scene: stage.scene.name.clone(),
         method: method.name().into_owned(),
@@ -115,6 +123,19 @@ fn check(setting: &Setting, args: &CheckArgs) -> Result<CheckReport, CliError> {
             zfail,
             skipped: left_out,
         },
+        lights_split: layers
+            .iter()
+            .filter(|light| light.1 > 1 && !light.2)
+            .count() as u64,
+        layers: layers
+            .into_iter()
+            .zip(lights)
+            .map(|((layers_bound, parts, _), light)| LightLayers {
+                name: light.name.clone(),
+                layers_bound,
+                parts,
+            })
+            .collect(),
         note,
     })
 }
@@ -135,7 +156,11 @@ fn table(report: &CheckReport) -> Table {
         .count("lights", report.lights)
         .count("  z-pass", report.lights_by_path.zpass)
         .count("  z-fail", report.lights_by_path.zfail)
-        .count("  skipped", report.lights_by_path.skipped)
+        .count("  skipped", report.lights_by_path.skipped);
+    if report.lights_split > 0 {
+        table.row(["  in parts".to_owned(), in_parts(report.lights_split)]);
+    }
+    table
         .count("pixel-lights", report.samples)
         .count("  wrong", report.wrong)
         .count("  ambiguous", report.ambiguous)

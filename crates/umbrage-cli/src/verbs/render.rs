@@ -78,6 +78,8 @@ fn report(lab: &Lab, setting: &Setting, method: Method) -> RenderReport {
             quads: volume.quads.len() as u64,
             quads_drawn: u64::from(lab.quads_drawn(number)),
             cap_triangles: lab.plan.cap_triangles(number) as u64,
+            layers_bound: u64::from(volume.layers_bound),
+            parts: volume.parts.len().max(1) as u64,
             path: match lab.path(number) {
                 LightPath::ZPass { .. } => PathTaken::Zpass,
                 LightPath::ZFail(_) => PathTaken::Zfail,
@@ -154,7 +156,11 @@ fn table(report: &RenderReport) -> Table {
         .count("lights", report.lights.len() as u64)
         .count("  rebuilt", totals.lights_rebuilt)
         .count("  cached", totals.lights_cached)
-        .count("  skipped", totals.lights_skipped)
+        .count("  skipped", totals.lights_skipped);
+    if totals.lights_split > 0 {
+        table.row(["  in parts".to_owned(), in_parts(totals.lights_split)]);
+    }
+    table
         .count("subset triangles", totals.subset_triangles)
         .count("facing triangles", totals.facing_triangles)
         .count("quads", totals.quads)
@@ -181,6 +187,12 @@ fn table(report: &RenderReport) -> Table {
         ]);
     }
     table
+}
+
+/// What became of lights with more layers than the stencil holds.
+pub(crate) fn in_parts(lights: u64) -> String {
+    let lights = grouped(lights);
+    format!("{lights}: behind 256 casters or more the stencil would wrap; counted part by part")
 }
 
 fn milliseconds(ms: f64) -> String {

@@ -6,15 +6,15 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
-
 use super::bounds::{Rect, light_rect};
 use super::extrusion::{Cosines, Drawn, Extrusion, is_beyond_range};
 use super::eye_count::{EyeCount, eye_count};
+use super::eye_counts::EyeCounts;
+use super::parts::{PartPlan, parts, push_caps};
 use super::view::View;
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
-use crate::volume::{Chain, ChainTriangle, Volumes};
+use crate::volume::{ChainTriangle, Part, Volumes};
 use crate::world::World;
 
 /// How a plan is made.
@@ -78,6 +78,8 @@ pub enum ZFailReason {
 /// Why a light cannot matter in this view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SkipReason {
+    /// It is no light: [`Light::is_usable`].
+    Unusable,
     /// Its range is outside the view.
     OutsideView,
     /// No triangle is within its range.
@@ -107,6 +109,9 @@ impl LightPath {
                 "the volume is finite, and the eye outside the light's range"
             }
             LightPath::ZFail(ZFailReason::Asked) => "asked for",
+            LightPath::Skipped(SkipReason::Unusable) => {
+                "its position, range, direction or cone is not usable"
+            }
             LightPath::Skipped(SkipReason::OutsideView) => "its range is outside the view",
             LightPath::Skipped(SkipReason::NothingInRange) => "no triangle is in its range",
             LightPath::Skipped(SkipReason::NotBuilt) => "its volume was not built",
@@ -136,6 +141,8 @@ pub struct LightPlan {
     /// Distance from the light to which its volume is extruded, in metres; infinite unless
     /// [`PlanOptions::extrusion`] asks for less.
     pub extrusion_m: f32,
+    /// Two or more if it is drawn in parts, which then share quads and caps among them; else empty.
+    pub parts: Vec<PartPlan>,
 }
 
 /// One view's plan for all lights.
@@ -156,32 +163,6 @@ impl LightPlan {
     }
 }
 
-/// Eye counts of the last plan, by the stamp of each light's volume.
-#[derive(Clone, Debug, Default)]
-struct EyeCounts {
-    eye: Option<DVec3>,
-    lights: Vec<(u64, EyeCount)>,
-}
-
-impl EyeCounts {
-    /// Forgets what is not of this eye.
-    fn look_from(&mut self, eye: DVec3, lights: usize) {
-        if self.eye != Some(eye) {
-            self.lights.clear();
-            self.eye = Some(eye);
-        }
-        self.lights.resize(lights, (0, EyeCount::Ambiguous));
-    }
-
-    fn of(&mut self, light: usize, stamp: u64, count: impl FnOnce() -> EyeCount) -> EyeCount {
-        let known = &mut self.lights[light];
-        if known.0 != stamp || stamp == 0 {
-            *known = (stamp, count());
-        }
-        known.1
-    }
-}
-
 impl FramePlan {
     /// Plans `view`, replacing what was there. `volumes` must be those of `lights`. Eye counts are
     /// kept from the last plan where neither eye nor volume changed.
@@ -197,6 +178,8 @@ impl FramePlan {
         self.caps.clear();
         self.counts.look_from(view.eye, lights.len());
         self.cosines.fit(lights.len());
+        // The number of the next part that is not a light's first.
+        let mut extra = lights.len() as u32;
         for (number, (light, volume)) in lights.iter().zip(&volumes.lights).enumerate() {
             let scissor = light_rect(view, light);
             let mut distance = |drawn| {
@@ -206,7 +189,9 @@ impl FramePlan {
             };
             let is_finite = options.extrusion != Extrusion::Infinite;
             let is_beyond = is_finite && is_beyond_range(light, view.eye);
-            let path = if scissor.is_empty() && options.culls.has(Cull::View) {
+            let path = if !light.is_usable() {
+                LightPath::Skipped(SkipReason::Unusable)
+            } else if scissor.is_empty() && options.culls.has(Cull::View) {
                 LightPath::Skipped(SkipReason::OutsideView)
             } else if volume.stamp == 0 {
                 LightPath::Skipped(SkipReason::NotBuilt)
@@ -217,24 +202,24 @@ impl FramePlan {
             } else if is_beyond && distance(Drawn::Whole).is_finite() {
                 LightPath::ZFail(ZFailReason::EyeBeyondRange)
             } else {
-                let (chain, quads) = (volumes.chain_of(number), volumes.quads_of(number));
-                let count = || eye_count(world, light, chain, quads, view.eye);
-                match self.counts.of(number, volume.stamp, count) {
+                let count = |part: &Part| {
+                    let (chain, quads) = (volumes.chain_of_part(part), volumes.quads_of_part(part));
+                    eye_count(world, light, chain, quads, view.eye)
+                };
+                match self.counts.of(number, volume, count) {
                     EyeCount::Exact(eye_count) => LightPath::ZPass { eye_count },
                     EyeCount::Ambiguous => LightPath::ZFail(ZFailReason::EyeOnSide),
                 }
             };
-            let chain = match path {
-                LightPath::ZFail(_) => volumes.chain_of(number),
+            let starts = match path {
+                LightPath::ZPass { .. } => self.counts.of_parts(number),
                 _ => &[],
             };
-            let [caps, reversed_caps] = [1, -1].map(|coefficient| {
-                let first = self.caps.len() as u32;
-                let triangles = chain.iter().flat_map(Chain::triangles);
-                self.caps
-                    .extend(triangles.filter(|t| t.coefficient() == coefficient));
-                first..self.caps.len() as u32
-            });
+            let mut parts = parts(number, &volume.parts, starts, &mut extra);
+            let [caps, reversed_caps] = match path {
+                LightPath::ZFail(_) => push_caps(number, volumes, &mut parts, &mut self.caps),
+                _ => [0, 0].map(|_| self.caps.len() as u32..self.caps.len() as u32),
+            };
             let mut quads = volume.quads.clone();
             // Behind a surface, where z-fail counts, the ray leaves the range.
             if matches!(path, LightPath::ZPass { .. }) && options.culls.has(Cull::Range) {
@@ -248,11 +233,13 @@ impl FramePlan {
             };
             self.lights.push(LightPlan {
                 extrusion_m,
-                stencil_reference: match path {
+                stencil_reference: match (parts.last(), path) {
+                    (Some(last), _) => last.reference,
                     // Lit where eye count + sides crossed is 0; stencil arithmetic is modulo 256.
-                    LightPath::ZPass { eye_count } => (eye_count as u8).wrapping_neg(),
+                    (None, LightPath::ZPass { eye_count }) => (eye_count as u8).wrapping_neg(),
                     _ => 0,
                 },
+                parts,
                 path,
                 scissor,
                 quads,
@@ -262,6 +249,13 @@ impl FramePlan {
         }
     }
 
+    /// Parts that are not the first of their light, with the light's number, in the order of their
+    /// own numbers, which follow those of all lights.
+    pub fn further_parts(&self) -> impl Iterator<Item = (usize, &PartPlan)> {
+        let lights = self.lights.iter().enumerate();
+        lights.flat_map(|(number, light)| light.parts.iter().skip(1).map(move |p| (number, p)))
+    }
+
     /// Plans lights without shadows: no volumes, every pixel lit.
     pub fn unshadowed(&mut self, lights: &[Light], view: &View) {
         self.lights.clear();
@@ -269,9 +263,10 @@ impl FramePlan {
         self.lights.extend(lights.iter().map(|light| {
             let scissor = light_rect(view, light);
             LightPlan {
-                path: match scissor.is_empty() {
-                    true => LightPath::Skipped(SkipReason::OutsideView),
-                    false => LightPath::ZPass { eye_count: 0 },
+                path: match (light.is_usable(), scissor.is_empty()) {
+                    (false, _) => LightPath::Skipped(SkipReason::Unusable),
+                    (_, true) => LightPath::Skipped(SkipReason::OutsideView),
+                    (_, false) => LightPath::ZPass { eye_count: 0 },
                 },
                 stencil_reference: 0,
                 scissor,
@@ -279,6 +274,7 @@ impl FramePlan {
                 caps: 0..0,
                 reversed_caps: 0..0,
                 extrusion_m: f32::INFINITY,
+                parts: Vec::new(),
             }
         }));
     }

@@ -16,9 +16,10 @@ use super::cache::{Job, Kept};
 #[cfg(debug_assertions)]
 use super::check_closed;
 use super::construction::{Makes, Marks};
+use super::layers::Layers;
 use super::{
-    Chain, Construction, Crow, HiddenScratch, LightVolume, Quad, Volumes, drop_hidden, facing,
-    range_first,
+    Chain, Construction, Crow, HiddenScratch, LayerLimit, LightVolume, Part, Quad, RangePrefix,
+    Volumes, drop_hidden, facing, range_first,
 };
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
@@ -35,6 +36,9 @@ pub struct VolumeBuilder {
     /// Casters among which one [`VolumeBuilder::build`] looks for hidden ones: what it may spend on
     /// lights that came to rest. Some 0.3 microseconds each.
     pub hidden_budget: u32,
+    /// What the mask can hold that volumes are counted in: lights that may have more layers are
+    /// built in parts. Changing it rebuilds everything.
+    pub layers: LayerLimit,
     scratch: Mutex<Vec<Scratch>>,
     chunks: Vec<Built>,
     /// Of the last world that was built by [`Construction::Crow`].
@@ -49,6 +53,7 @@ struct Scratch {
     marks: Marks,
     sorting: Vec<Quad>,
     hidden: HiddenScratch,
+    layers: Layers,
 }
 
 /// What one chunk of lights became.
@@ -74,6 +79,7 @@ impl VolumeBuilder {
             culls,
             construction: Construction::Counter,
             hidden_budget: 1 << 14,
+            layers: LayerLimit::STENCIL,
             scratch: Mutex::default(),
             chunks: Vec::new(),
             crow: Crow::default(),
@@ -124,7 +130,8 @@ impl VolumeBuilder {
             Construction::Counter => self.culls,
             Construction::Brute | Construction::Crow => self.culls.without(Cull::Hidden),
         };
-        volumes.forget_changes(world, lights, culls, construction);
+        let layers = self.layers;
+        volumes.forget_changes(world, lights, culls, construction, layers);
         if construction == Construction::Crow {
             self.crow.update(world);
         }
@@ -137,6 +144,7 @@ impl VolumeBuilder {
         let makes = Makes {
             construction,
             crow: &self.crow,
+            layers,
         };
         let build_chunk = |out: &mut Built, jobs: &[Job]| {
             let mut scratch = lock(pool).pop().unwrap_or_default();
@@ -231,23 +239,49 @@ fn build_one(
         subset_triangles += scratch.subset.len() as u32;
     }
     let chain = &scratch.chain;
-    makes.quads(world, chain, &mut scratch.marks, &mut out.quads);
     out.chains.extend_from_slice(chain);
-    let quads = &mut out.quads[first_quad..];
-    let in_range = range_first(world, light, quads, &mut scratch.sorting);
-    #[cfg(debug_assertions)]
-    if makes.construction != Construction::Crow
-        && let Err(fault) = check_closed(world, chain.iter().flat_map(Chain::triangles), quads)
-    {
-        panic!("{fault}");
-    }
-    out.lights.push(LightVolume {
+    let mut volume = LightVolume {
         subset_triangles,
         facing_triangles: casters(chain),
-        quads: first_quad as u32..out.quads.len() as u32,
-        in_range,
+        layers_bound: scratch
+            .layers
+            .bound(world, light, chain, makes.layers.whole),
         chain: first_chain as u32..out.chains.len() as u32,
-        build_us: start.elapsed().as_secs_f32() * 1e6,
         ..LightVolume::default()
-    });
+    };
+    let parts = match volume.layers_bound > makes.layers.whole {
+        true => (scratch.layers).split(world, light, chain, makes.layers.part),
+        false => Vec::new(),
+    };
+    if parts.len() < 2 {
+        makes.quads(world, chain, &mut scratch.marks, &mut out.quads);
+        let quads = &mut out.quads[first_quad..];
+        volume.in_range = range_first(world, light, quads, &mut scratch.sorting);
+    } else {
+        for chain in &parts {
+            let (quads, chains) = (out.quads.len() as u32, out.chains.len() as u32);
+            makes.quads(world, chain, &mut scratch.marks, &mut out.quads);
+            out.chains.extend_from_slice(chain);
+            volume.parts.push(Part {
+                quads: quads..out.quads.len() as u32,
+                chain: chains..out.chains.len() as u32,
+            });
+        }
+        volume.in_range = RangePrefix::all((out.quads.len() - first_quad) as u32);
+    }
+    volume.quads = first_quad as u32..out.quads.len() as u32;
+    #[cfg(debug_assertions)]
+    if makes.construction != Construction::Crow {
+        let of = |range: &std::ops::Range<u32>| range.start as usize..range.end as usize;
+        let whole = [(&volume.chain, &volume.quads)].into_iter();
+        let parts = volume.parts.iter().map(|part| (&part.chain, &part.quads));
+        for (chain, quads) in whole.chain(parts) {
+            let chain = out.chains[of(chain)].iter().flat_map(Chain::triangles);
+            if let Err(fault) = check_closed(world, chain, &out.quads[of(quads)]) {
+                panic!("{fault}");
+            }
+        }
+    }
+    volume.build_us = start.elapsed().as_secs_f32() * 1e6;
+    out.lights.push(volume);
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use super::build::Built;
 use super::store::Block;
-use super::{Chain, Construction, LightVolume, Volumes};
+use super::{Chain, Construction, LayerLimit, LightVolume, Volumes};
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
 use crate::world::{Reach, World};
@@ -70,6 +70,7 @@ impl Volumes {
         lights: &[Light],
         culls: Culls,
         construction: Construction,
+        layers: LayerLimit,
     ) {
         for key in self.keys.iter_mut().skip(lights.len()) {
             self.quad_store.free(&mut key.quads);
@@ -81,8 +82,9 @@ impl Volumes {
         let all = !culls.has(Cull::Cache)
             || culls.has(Cull::Hidden) != self.culls.has(Cull::Hidden)
             || self.construction != construction
+            || self.layers != layers
             || changes.fixed;
-        (self.culls, self.construction) = (culls, construction);
+        (self.culls, self.construction, self.layers) = (culls, construction, layers);
         let moved = changes.boxes;
         for ((key, volume), light) in self.keys.iter_mut().zip(&mut self.lights).zip(lights) {
             if all || key.light != Some(*light) {
@@ -109,7 +111,7 @@ impl Volumes {
         })
     }
 
-    /// The wanted lights that are stale, and of those that are merely not settled as many as
+    /// The usable, wanted lights that are stale, and of those that are merely not settled as many as
     /// `budget` casters make up; without a budget all of them, to be settled at once.
     pub(super) fn jobs(
         &self,
@@ -126,7 +128,7 @@ impl Volumes {
                 Fixed::Plain => after != Some(None),
                 Fixed::Stale => budget.is_none(),
             };
-            if (key.is_stale() || hide) && wanted(light) {
+            if (key.is_stale() || hide) && light.is_usable() && wanted(light) {
                 if let (true, Some(after)) = (hide, after) {
                     left = after;
                 }
@@ -143,7 +145,7 @@ impl Volumes {
         let of = |r: &Range<u32>| r.start as usize..r.end as usize;
         let (quads, chain) = (
             &built.quads[of(&volume.quads)],
-            &built.chains[of(&volume.chain)],
+            &built.chains[of(&volume.chains())],
         );
         let key = &mut self.keys[number];
         self.quad_store
@@ -156,12 +158,12 @@ impl Volumes {
             true => Fixed::Settled,
             false => Fixed::Plain,
         };
-        self.lights[number] = LightVolume {
-            quads: key.quads.range(),
-            chain: key.chain.range(),
+        let mut stored = LightVolume {
             stamp,
             ..volume.clone()
         };
+        stored.move_to(key.quads.first, key.chain.first);
+        self.lights[number] = stored;
     }
 
     /// Closes the gaps once they make up half of the arrays.
@@ -173,7 +175,7 @@ impl Volumes {
         if moved {
             for (volume, key) in self.lights.iter_mut().zip(&self.keys) {
                 if !key.is_stale() {
-                    (volume.quads, volume.chain) = (key.quads.range(), key.chain.range());
+                    volume.move_to(key.quads.first, key.chain.first);
                 }
             }
         }

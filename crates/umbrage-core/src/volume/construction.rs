@@ -1,6 +1,6 @@
 //! Ways from a chain to quads, for comparison: one call for all of them.
 
-use super::{Chain, Crow, Quad, brute, counter};
+use super::{Chain, Crow, LayerLimit, Quad, brute, counter};
 use crate::world::World;
 
 /// How a chain becomes quads. All go through the same query, facing, sorting by range, cache, eye
@@ -24,6 +24,8 @@ pub(super) struct Makes<'a> {
     pub(super) construction: Construction,
     /// Up to date if the construction is [`Construction::Crow`].
     pub(super) crow: &'a Crow,
+    /// What parts are made for.
+    pub(super) layers: LayerLimit,
 }
 
 impl Makes<'_> {

@@ -190,6 +190,14 @@ pub fn range_first(
 }
 
 impl RangePrefix {
+    /// All of a light's `quads`, in whatever order, for any eye.
+    pub(super) fn all(quads: u32) -> Self {
+        Self {
+            reach: quads,
+            range: quads,
+        }
+    }
+
     /// How many of the light's `all` quads an eye must draw.
     pub fn for_eye(&self, light: &Light, eye: DVec3, all: u32) -> u32 {
         let v = eye - light.position;

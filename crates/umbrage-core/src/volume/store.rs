@@ -16,12 +16,6 @@ pub(super) struct Block {
     room: u32,
 }
 
-impl Block {
-    pub(super) fn range(&self) -> Range<u32> {
-        self.first..self.first + self.length
-    }
-}
-
 /// What state of which array a copy was made of; the default is of none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Version {
@@ -181,8 +175,8 @@ mod tests {
             }
             seen = store.version();
             for (block, list) in blocks.iter().zip(&lists) {
-                let range = block.range();
-                assert_eq!(copy[range.start as usize..range.end as usize], list[..]);
+                let held = &copy[block.first as usize..][..block.length as usize];
+                assert_eq!(held, &list[..]);
             }
             assert_eq!(store.since(seen, array.len()).count(), 0);
         }

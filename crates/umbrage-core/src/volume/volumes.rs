@@ -6,9 +6,20 @@ use rayon::prelude::*;
 
 use super::cache::Key;
 use super::store::{Store, Version};
-use super::{Chain, ChainTriangle, ClosureFault, Construction, Quad, RangePrefix, check_closed};
+use super::{
+    Chain, ChainTriangle, ClosureFault, Construction, LayerLimit, Quad, RangePrefix, check_closed,
+};
 use crate::cull::Culls;
 use crate::world::{Seen, World};
+
+/// A part of a light whose layers are too many for the mask in one go: a closed volume of its own.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Part {
+    /// Its silhouette quads, in [`Volumes::quads`].
+    pub quads: Range<u32>,
+    /// Its chain, in [`Volumes::chains`].
+    pub chain: Range<u32>,
+}
 
 /// One light's share of [`Volumes`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,12 +29,19 @@ pub struct LightVolume {
     pub subset_triangles: u32,
     /// Triangles of the chain: those that cast. Both caps together have twice as many.
     pub facing_triangles: u32,
-    /// Its silhouette quads, in [`Volumes::quads`].
+    /// Its silhouette quads, in [`Volumes::quads`]; those of its parts, one after the other, if it
+    /// has any.
     pub quads: Range<u32>,
-    /// How many of them an eye in its range has to draw.
+    /// How many of them an eye in its range has to draw: all, if it has parts.
     pub in_range: RangePrefix,
     /// Its chain, in [`Volumes::chains`]; objects' triangles come last.
     pub chain: Range<u32>,
+    /// No point is behind more of its casters than this: proven, and only as tight as it takes to
+    /// stay within [`VolumeBuilder::layers`](super::VolumeBuilder::layers).
+    pub layers_bound: u32,
+    /// Two or more if that is beyond what the mask holds in one go; else empty, and the light is
+    /// drawn as a whole.
+    pub parts: Vec<Part>,
     /// When it was built, 0 if it was not: the same stamp under the same light's number means the
     /// same volume.
     pub stamp: u64,
@@ -51,6 +69,28 @@ pub struct Volumes {
     pub(super) world: Seen,
     pub(super) culls: Culls,
     pub(super) construction: Construction,
+    pub(super) layers: LayerLimit,
+}
+
+impl LightVolume {
+    /// Where all its chains lie: the whole one, then those of its parts.
+    pub(super) fn chains(&self) -> Range<u32> {
+        let last = self.parts.last().map_or(&self.chain, |part| &part.chain);
+        self.chain.start..last.end
+    }
+
+    /// Moves all ranges, so that quads and chains begin here.
+    pub(super) fn move_to(&mut self, quads: u32, chains: u32) {
+        let (old_quads, old_chains) = (self.quads.start, self.chain.start);
+        let moved =
+            |range: &Range<u32>, old: u32, new: u32| range.start - old + new..range.end - old + new;
+        for part in &mut self.parts {
+            part.quads = moved(&part.quads, old_quads, quads);
+            part.chain = moved(&part.chain, old_chains, chains);
+        }
+        self.quads = moved(&self.quads, old_quads, quads);
+        self.chain = moved(&self.chain, old_chains, chains);
+    }
 }
 
 impl Volumes {
@@ -79,12 +119,26 @@ impl Volumes {
         self.chain_of(light).iter().flat_map(Chain::triangles)
     }
 
-    /// Whether every light's volume is closed.
+    /// The quads of a part.
+    pub fn quads_of_part(&self, part: &Part) -> &[Quad] {
+        &self.quads[part.quads.start as usize..part.quads.end as usize]
+    }
+
+    /// The chain of a part.
+    pub fn chain_of_part(&self, part: &Part) -> &[Chain] {
+        &self.chains[part.chain.start as usize..part.chain.end as usize]
+    }
+
+    /// Whether every light's volume is closed, and each of its parts is.
     pub fn check_closed(&self, world: &World) -> Result<(), ClosureFault> {
         (0..self.lights.len())
             .into_par_iter()
             .try_for_each(|light| {
-                check_closed(world, self.chain_triangles(light), self.quads_of(light))
+                check_closed(world, self.chain_triangles(light), self.quads_of(light))?;
+                self.lights[light].parts.iter().try_for_each(|part| {
+                    let chain = self.chain_of_part(part).iter().flat_map(Chain::triangles);
+                    check_closed(world, chain, self.quads_of_part(part))
+                })
             })
     }
 

@@ -12,7 +12,7 @@ use std::ptr::NonNull;
 use std::sync::Arc;
 
 use bytemuck::CheckedBitPattern;
-use memmap2::Mmap;
+use memmap2::{Mmap, MmapMut};
 
 /// A list of plain values, read as a slice.
 ///
@@ -116,6 +116,13 @@ impl MappedFile {
         // out nothing that outlives it.
         let map = unsafe { Mmap::map(file)? };
         Ok(Self(Arc::new(map)))
+    }
+
+    /// A file that is in memory already, as a map of its own; `bytes` must not be empty.
+    pub(super) fn copied(bytes: &[u8]) -> io::Result<Self> {
+        let mut map = MmapMut::map_anon(bytes.len())?;
+        map.copy_from_slice(bytes);
+        Ok(Self(Arc::new(map.make_read_only()?)))
     }
 
     pub(super) fn bytes(&self) -> &[u8] {

@@ -41,6 +41,8 @@ pub use objects::{Object, ObjectError, ObjectId, Pose};
 pub use planes::{LightPoint, PlaneCluster, Planes, Side};
 pub use query::{Layer, Reach, query};
 pub use save::SavedWorldError;
+#[doc(hidden)]
+pub use save::reseal;
 pub use seen::{Changes, Seen};
 pub use subset::{Members, Subset};
 
@@ -95,6 +97,16 @@ pub enum WorldError {
     NotFinite {
         /// Offending vertex.
         vertex: usize,
+    },
+    /// A position where 32 bits hold no distances any more.
+    #[error(
+        "vertex {vertex} lies beyond {limit:e} m: scale the mesh down, or move it to its origin"
+    )]
+    TooFar {
+        /// Offending vertex.
+        vertex: usize,
+        /// Largest coordinate a world takes.
+        limit: f32,
     },
     /// A tolerance that is none.
     #[error("a weld tolerance of {tolerance_m} m: give a finite length, zero or more")]
@@ -219,6 +231,10 @@ impl PartialEq for World {
 impl World {
     /// Largest number of triangles in one world: three half edges each must fit 31 bits.
     pub const MAX_TRIANGLES: usize = (1 << 31) / 3;
+
+    /// Largest coordinate of a vertex, in metres: squared distances and areas, which trees and
+    /// queries compare, stay finite in f32.
+    pub const MAX_COORDINATE: f32 = (1u64 << 60) as f32;
 
     /// Builds a world. Deterministic; in debug builds every invariant is checked.
     pub fn build(mesh: &Mesh) -> Result<Self, WorldError> {
@@ -365,10 +381,8 @@ fn check_input(mesh: &Mesh) -> Result<(), WorldError> {
             positions: mesh.positions.len(),
         });
     }
-    let both = [&mesh.positions, &mesh.residuals];
-    let not_finite = both.map(|list| list.iter().position(|p| !p.is_finite()));
-    if let Some(vertex) = not_finite.into_iter().flatten().min() {
-        return Err(WorldError::NotFinite { vertex });
+    for list in [&mesh.positions, &mesh.residuals] {
+        check_positions(list.iter().map(|p| p.as_dvec3()))?;
     }
     let vertices = mesh.positions.len();
     for (triangle, indices) in mesh.triangles.iter().enumerate() {
@@ -381,6 +395,28 @@ fn check_input(mesh: &Mesh) -> Result<(), WorldError> {
         }
     }
     Ok(())
+}
+
+/// That a world can hold vertices at these positions.
+fn check_positions(positions: impl IntoIterator<Item = DVec3>) -> Result<(), WorldError> {
+    let found = positions
+        .into_iter()
+        .enumerate()
+        .find(|(_, p)| !is_place(*p));
+    let Some((vertex, p)) = found else {
+        return Ok(());
+    };
+    let limit = World::MAX_COORDINATE;
+    Err(match p.as_vec3().is_finite() {
+        true => WorldError::TooFar { vertex, limit },
+        false => WorldError::NotFinite { vertex },
+    })
+}
+
+/// Whether a world can hold a vertex there.
+fn is_place(p: DVec3) -> bool {
+    let most = DVec3::splat(World::MAX_COORDINATE.into());
+    p.abs().cmple(most).all()
 }
 
 struct Stopwatch(Instant);

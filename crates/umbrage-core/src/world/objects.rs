@@ -15,7 +15,7 @@ use thiserror::Error;
 use super::deform::Given;
 use super::extent::Extent;
 use super::stages::{self, Welded};
-use super::{LANES, World, WorldError, boxes, check_input, planes};
+use super::{LANES, World, WorldError, boxes, check_input, is_place, planes};
 use crate::mesh::{Casting, Mesh};
 use crate::place::{Places, split};
 use crate::stamp;
@@ -54,7 +54,8 @@ pub enum ObjectError {
     /// Its mesh is not one.
     #[error(transparent)]
     Mesh(#[from] WorldError),
-    /// A pose with NaN, infinite or all-zero parts, or one that takes a vertex beyond f32.
+    /// A pose with NaN, infinite or all-zero parts, or one that takes a vertex beyond
+    /// [`World::MAX_COORDINATE`].
     #[error("the pose takes the object nowhere: give a finite, non-zero rotation and translation")]
     Pose,
     /// Vertices that became one when the object was inserted are to stand at different places.
@@ -275,8 +276,6 @@ pub(super) fn check(rest: &[DVec3], pose: &Pose) -> Result<(), ObjectError> {
     let rotation = pose.rotation.normalize();
     let finite = rotation.is_finite()
         && pose.translation.is_finite()
-        && rest
-            .iter()
-            .all(|p| placed(rotation, pose, *p).as_vec3().is_finite());
+        && rest.iter().all(|p| is_place(placed(rotation, pose, *p)));
     finite.then_some(()).ok_or(ObjectError::Pose)
 }

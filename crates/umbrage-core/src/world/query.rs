@@ -41,8 +41,16 @@ enum Overlap {
 
 impl Reach {
     /// Of a point light: its sphere. Of a spot: its sphere cut by its cone. Of a directional
-    /// light: everything.
+    /// light: everything. Of a light that is not usable: nothing.
     pub fn new(light: &Light) -> Self {
+        if !light.is_usable() {
+            return Self {
+                center: Vec3::ZERO,
+                slack: 0.0,
+                range2: -1.0,
+                cone: None,
+            };
+        }
         let cone = match light.shape {
             LightShape::Spot {
                 direction,
@@ -54,7 +62,10 @@ impl Reach {
             }),
             _ => None,
         };
-        let [center, residual] = split(light.position);
+        let [center, residual] = match light.is_directional() {
+            true => [Vec3::ZERO; 2],
+            false => split(light.position),
+        };
         Self {
             center,
             slack: residual.length(),

@@ -107,7 +107,22 @@ impl World {
         if !found.is_file() || found.len() < size_of::<Preamble>() as u64 {
             return Err(SavedWorldError::NotASavedWorld);
         }
-        let file = MappedFile::new(&File::open(path)?)?;
+        Self::from_file(MappedFile::new(&File::open(path)?)?, fingerprint)
+    }
+
+    /// [`World::open`] of a file that is in memory, for hosts that keep theirs in an archive. The
+    /// bytes are copied.
+    ///
+    /// # Errors
+    /// As [`World::open`].
+    pub fn from_saved(bytes: &[u8], fingerprint: Fingerprint) -> Result<Self, SavedWorldError> {
+        if bytes.len() < size_of::<Preamble>() {
+            return Err(SavedWorldError::NotASavedWorld);
+        }
+        Self::from_file(MappedFile::copied(bytes)?, fingerprint)
+    }
+
+    fn from_file(file: MappedFile, fingerprint: Fingerprint) -> Result<Self, SavedWorldError> {
         let contents = contents(file.bytes())?;
         if contents.fingerprint != fingerprint {
             return Err(SavedWorldError::Stale);
@@ -140,6 +155,22 @@ impl World {
         bounds::check(&world, fingerprint.triangles())?;
         Ok(world.without_objects())
     }
+}
+
+/// Makes the length and the checksums of a saved world right, and gives the fingerprint that it
+/// claims: for tests of what stands behind them.
+#[doc(hidden)]
+pub fn reseal(file: &mut [u8]) -> Option<Fingerprint> {
+    let mut head: Head = read(file)?;
+    let contents = &mut head.contents;
+    contents.file_bytes = file.len() as u64;
+    for section in Section::ALL {
+        let bytes = range(contents, section).and_then(|range| file.get(range));
+        contents.sections[section as usize].checksum = checksum(bytes.unwrap_or_default());
+    }
+    head.checksum = checksum(bytemuck::bytes_of(contents));
+    file[..size_of::<Head>()].copy_from_slice(bytemuck::bytes_of(&head));
+    Some(head.contents.fingerprint)
 }
 
 /// The bytes of an array, and of one element.

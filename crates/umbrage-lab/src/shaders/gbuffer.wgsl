@@ -7,6 +7,7 @@ struct Surface {
     params: vec4f,
 }
 
+// Of the triangles from the one whose number is the instance index on.
 @group(0) @binding(0) var<storage, read> triangle_material: array<u32>;
 // One packed normal a corner, or a single entry where the scene has none.
 @group(0) @binding(1) var<storage, read> normals: array<u32>;
@@ -25,7 +26,7 @@ struct Varying {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) corner: u32) -> Varying {
+fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) start: u32) -> Varying {
     let triangle = corner / 3u;
     let first = 3u * triangle;
     let a = umbrage_corner(first);
@@ -41,13 +42,14 @@ fn vertex(@builtin(vertex_index) corner: u32) -> Varying {
     }
     out.clip = umbrage_clip(umbrage_world_view, umbrage_from_eye(umbrage_corner(corner)), 1.0);
     out.distance = out.clip.w;
-    out.material = triangle_material[triangle];
+    out.material = triangle_material[triangle - start];
     out.normal = face;
-    if arrayLength(&normals) > 1u && normals[corner] != 0u {
-        out.normal = unpack4x8snorm(normals[corner]).xyz;
+    let at = corner - 3u * start;
+    if arrayLength(&normals) > 1u && normals[at] != 0u {
+        out.normal = unpack4x8snorm(normals[at]).xyz;
     }
     if arrayLength(&uvs) > 1u {
-        out.uv = uvs[corner];
+        out.uv = uvs[at];
     }
     return out;
 }

@@ -27,9 +27,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::Vec3;
-use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
+use umbrage::{CLIP_WGSL, ShadowRenderer};
 use umbrage_core::world::{Reach, World};
-use wgpu::util::DeviceExt as _;
 
 use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};
@@ -107,7 +106,7 @@ impl Extrude {
         )];
         let source = format!(
             "{CLIP_WGSL}\n{}\n{}",
-            world_wgsl(1),
+            shadows.world_wgsl(1),
             include_str!("../shaders/extrude.wgsl")
         );
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -196,7 +195,6 @@ impl Technique for Extrude {
     fn prepare(&mut self, given: &Given<'_>) -> Result<(), GpuError> {
         self.light.prepare(given);
         self.unseen.update(given)?;
-        let device = &given.gpu.device;
         let world = &given.stage.world;
         let built = world.topology();
         if self.buffers.as_ref().is_none_or(|b| b.built != built) {
@@ -211,21 +209,27 @@ impl Technique for Extrude {
             .map(|l| l.light.homogeneous_f32())
             .collect();
         lights.resize(lights.len().max(1), [[0.0; 4]; 2]);
-        let lights = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("light positions"),
-            contents: bytemuck::cast_slice(&lights),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
-        let joints = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("joints"),
-            contents: bytemuck::cast_slice(&skin::matrices(given.stage)),
-            usage: wgpu::BufferUsages::STORAGE,
-        });
-        let first = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("first skinned corner"),
-            contents: bytemuck::bytes_of(&[skin::first_corner(world); 4]),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let lights = given
+            .gpu
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("light positions"),
+                contents: bytemuck::cast_slice(&lights),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
+        let joints = given
+            .gpu
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("joints"),
+                contents: bytemuck::cast_slice(&skin::matrices(given.stage)),
+                usage: wgpu::BufferUsages::STORAGE,
+            });
+        let first = given
+            .gpu
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("first skinned corner"),
+                contents: bytemuck::bytes_of(&[skin::first_corner(world); 4]),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
         let buffers = [&first, &lights, at_rest, &joints];
         let resources = buffers.map(wgpu::Buffer::as_entire_binding);
         self.bind_group = Some(bind(given.gpu, "extrude", &self.layout, resources));
@@ -306,7 +310,7 @@ impl ClosedMesh {
 
 impl Buffers {
     fn new(gpu: &Gpu, stage: &Stage, built: Vec<u64>, normals: Normals) -> Result<Self, GpuError> {
-        let (device, world) = (&gpu.device, &stage.world);
+        let world = &stage.world;
         let mut meshes = Vec::new();
         let mut corners = Vec::new();
         let (mut edges, mut unpaired) = (0, 0);
@@ -343,15 +347,18 @@ impl Buffers {
         }
         corners.resize(corners.len().max(3), 0);
         let skin = skin::corners(stage, normals);
-        gpu.check_storage("corners of extruded triangles", size_of_val(&corners[..]))?;
+        gpu.check_buffer(
+            "corners of extruded triangles",
+            size_of_val(&corners[..]) as u64,
+        )?;
         gpu.check_storage("skinned normals", size_of_val(&skin[..]))?;
         Ok(Self {
-            corners: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            corners: gpu.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("extrude corners"),
                 contents: bytemuck::cast_slice(&corners),
                 usage: wgpu::BufferUsages::INDEX,
             }),
-            skin: device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            skin: gpu.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("skinned normals"),
                 contents: bytemuck::cast_slice(&skin),
                 usage: wgpu::BufferUsages::STORAGE,

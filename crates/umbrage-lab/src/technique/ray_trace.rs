@@ -17,7 +17,6 @@ use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer, light_wgsl};
-use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroupLayout, BufferUsages, ShaderStages, TextureFormat, TextureUsages};
 
 use self::primary::Primary;
@@ -123,13 +122,14 @@ impl RayTrace {
         lights: &Range<usize>,
     ) -> Option<()> {
         let (tree, frame) = (self.tree.as_ref()?, self.frame.as_ref()?);
-        let device = &given.gpu.device;
         let batch = [lights.start as u32, lights.end as u32, 0, 0];
-        let batch = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("batch of rays"),
-            contents: bytemuck::cast_slice(&batch),
-            usage: BufferUsages::UNIFORM,
-        });
+        let batch = given
+            .gpu
+            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("batch of rays"),
+                contents: bytemuck::cast_slice(&batch),
+                usage: BufferUsages::UNIFORM,
+            });
         let ids = whole(&frame.ids);
         let resources = [
             given.shadows.view_buffer().as_entire_binding(),
@@ -243,13 +243,11 @@ impl Frame {
                 [wgpu::BindingResource::TextureView(&bits)],
             ),
             bits,
-            lights: gpu
-                .device
-                .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                    label: Some("lights of rays"),
-                    contents: bytemuck::cast_slice(lights),
-                    usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-                }),
+            lights: gpu.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("lights of rays"),
+                contents: bytemuck::cast_slice(lights),
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+            }),
         }
     }
 }

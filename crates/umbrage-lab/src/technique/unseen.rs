@@ -57,7 +57,10 @@ impl Unseen {
 
     /// Records that what this frame finds is kept.
     pub(super) fn record(&mut self, given: &Given<'_>, encoder: &mut wgpu::CommandEncoder) {
-        let Some(calls) = given.shadows.calls().filter(|_| self.known.is_none()) else {
+        if self.known.is_some() {
+            return;
+        }
+        let Some(calls) = given.shadows.calls().and_then(|mut calls| calls.next()) else {
             return;
         };
         let readable = record_copy(given.gpu, encoder, calls);

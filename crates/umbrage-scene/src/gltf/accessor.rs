@@ -237,7 +237,7 @@ impl Context<'_> {
         SceneError::Accessor {
             path: self.path.clone(),
             accessor: index,
-            name: self.root.accessors[index].name.clone().unwrap_or_default(),
+            name: super::name_or(&self.root.accessors[index].name, "accessor", index),
             what,
         }
     }

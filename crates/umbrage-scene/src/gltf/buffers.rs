@@ -4,12 +4,13 @@
 //! however many buffers name it. Invariant: a loaded buffer has at least the length it declares.
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use gltf::json::{Buffer, Root};
 
-use crate::{SceneError, uri};
+use crate::uri::{self, Place};
+use crate::{Files, SceneError};
 
 /// The bytes of every buffer, cut to the declared length.
 pub(super) struct Buffers {
@@ -25,36 +26,45 @@ impl Buffers {
             .map(|(bytes, length)| &bytes[..*length])
     }
 
-    /// Bytes that were read for all of them, each file counted once.
+    /// Bytes of the files that were read for them, each counted once.
     pub(super) fn bytes_read(&self) -> u64 {
         self.read
     }
 }
 
 /// Reads every buffer.
-pub(super) fn load(root: &Root, binary: Option<&[u8]>, path: &Path) -> Result<Buffers, SceneError> {
-    let mut known: HashMap<&str, Rc<[u8]>> = HashMap::new();
+pub(super) fn load(
+    root: &Root,
+    binary: Option<&[u8]>,
+    path: &Path,
+    files: &dyn Files,
+) -> Result<Buffers, SceneError> {
+    let mut known: HashMap<PathBuf, Rc<[u8]>> = HashMap::new();
     let mut buffers = Buffers {
         bytes: Vec::with_capacity(root.buffers.len()),
         read: 0,
     };
+    let binary: Option<Rc<[u8]>> = binary.map(Rc::from);
     for (index, buffer) in root.buffers.iter().enumerate() {
         let fail = |what| SceneError::Buffer {
             path: path.to_owned(),
             buffer: index,
             what,
         };
-        let bytes = match &buffer.uri {
-            Some(uri) => match known.get(uri.as_str()) {
+        let place = buffer.uri.as_deref().map(|uri| uri::place(uri, path));
+        let bytes = match place.transpose().map_err(fail)? {
+            Some(Place::Data(bytes)) => bytes.into(),
+            Some(Place::File(file)) => match known.get(&file) {
                 Some(bytes) => bytes.clone(),
                 None => {
-                    let bytes: Rc<[u8]> = uri::fetch(uri, path).map_err(fail)?.into();
+                    let bytes = files.read(&file).map_err(|error| fail(error.to_string()))?;
+                    let bytes: Rc<[u8]> = bytes.into();
                     buffers.read += bytes.len() as u64;
-                    known.insert(uri, bytes.clone());
+                    known.insert(file, bytes.clone());
                     bytes
                 }
             },
-            None => embedded(index, buffer, binary).map_err(fail)?,
+            None => embedded(index, buffer, binary.as_ref()).map_err(fail)?,
         };
         let length = usize::try_from(buffer.byte_length.0)
             .ok()
@@ -72,9 +82,9 @@ pub(super) fn load(root: &Root, binary: Option<&[u8]>, path: &Path) -> Result<Bu
 }
 
 /// The binary chunk, which only buffer 0 may be. A buffer of no bytes needs none.
-fn embedded(index: usize, buffer: &Buffer, binary: Option<&[u8]>) -> Result<Rc<[u8]>, String> {
+fn embedded(index: usize, buffer: &Buffer, binary: Option<&Rc<[u8]>>) -> Result<Rc<[u8]>, String> {
     match binary {
-        Some(binary) if index == 0 => Ok(binary.into()),
+        Some(binary) if index == 0 => Ok(binary.clone()),
         _ if buffer.byte_length.0 == 0 => Ok(Rc::from([])),
         _ => Err("it has neither a URI nor a binary chunk".to_owned()),
     }

@@ -16,7 +16,8 @@ use gltf::json::validation::Checked;
 
 use super::{Context, name_or};
 use crate::image::{self, Decoder, ImageError};
-use crate::{AlphaMode, LoadReport, Material, Progress, Scene, SceneError, uri};
+use crate::uri::{self, Place};
+use crate::{AlphaMode, LoadReport, Material, Progress, Scene, SceneError};
 
 /// Loads every material.
 pub(super) fn load(
@@ -144,7 +145,10 @@ impl Images {
 fn bytes(context: &Context<'_>, declared: &Declared) -> Result<Vec<u8>, String> {
     match (declared.buffer_view, &declared.uri) {
         (Some(view), _) => Ok(context.view(view.value())?.to_vec()),
-        (None, Some(uri)) => uri::fetch(uri, &context.path),
+        (None, Some(uri)) => match uri::place(uri, &context.path)? {
+            Place::Data(bytes) => Ok(bytes),
+            Place::File(file) => context.files.read(&file).map_err(|e| e.to_string()),
+        },
         (None, None) => Err("it has neither a buffer view nor a URI".to_owned()),
     }
 }

@@ -24,27 +24,33 @@ use std::path::{Path, PathBuf};
 
 use gltf::json::Root;
 
-use crate::{LoadReport, Progress, Scene, SceneError, source};
+use crate::{Files, LoadReport, Progress, Scene, SceneError, source};
 
 /// What every stage of one load reads, and where it counts.
 struct Context<'a> {
     path: PathBuf,
+    files: &'a dyn Files,
     root: &'a Root,
     buffers: buffers::Buffers,
     budget: crate::budget::Budget,
 }
 
 /// Loads a `.gltf` or `.glb` file; which of the two is decided by its first bytes.
-pub(crate) fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneError> {
-    let bytes = source::read(path)?;
+pub(crate) fn load(
+    path: &Path,
+    files: &dyn Files,
+    progress: &dyn Progress,
+) -> Result<Scene, SceneError> {
+    let bytes = files.read(path)?;
     let mut report = LoadReport::default();
     let parts = container::split(&bytes, path, &mut report)?;
     let root = root::parse(&parts.json, path, &mut report)?;
 
-    let buffers = buffers::load(&root, parts.binary.as_deref(), path)?;
+    let buffers = buffers::load(&root, parts.binary.as_deref(), path, files)?;
     let budget = crate::budget::Budget::new(bytes.len() as u64 + buffers.bytes_read());
     let mut context = Context {
         path: path.to_owned(),
+        files,
         root: &root,
         buffers,
         budget,
@@ -58,6 +64,7 @@ pub(crate) fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneE
     material::load(&mut context, &mut scene, progress)?;
     mesh::load(&mut context, &mut scene, progress)?;
     let tree = nodes::load(&context, &mut scene, progress)?;
+    context.budget.take_flattened(&scene, path)?;
     rigging::load(&mut context, &mut scene, tree, progress)?;
     Ok(scene)
 }

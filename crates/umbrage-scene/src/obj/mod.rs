@@ -17,19 +17,23 @@ use std::path::Path;
 
 use glam::{DAffine3, Vec2, Vec3};
 
-use crate::{Instance, LoadReport, Mesh, Progress, Scene, SceneError, source};
+use crate::{Files, Instance, LoadReport, Mesh, Progress, Scene, SceneError, source};
 use checked::Statements;
 
 /// A name where a file gives none; no name in a text file can be equal to it.
 const NAMELESS: &str = "\0";
 
 /// Loads a `.obj` file and the material libraries and images beside it.
-pub(crate) fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneError> {
-    let bytes = source::read(path)?;
+pub(crate) fn load(
+    path: &Path,
+    files: &dyn Files,
+    progress: &dyn Progress,
+) -> Result<Scene, SceneError> {
+    let bytes = files.read(path)?;
     let text = text::decode(&bytes, path)?;
     progress.stage("obj", bytes.len() as u64);
     let report = RefCell::new(LoadReport::default());
-    let libraries = mtl::Libraries::new(path, &report);
+    let libraries = mtl::Libraries::new(path, files, &report);
     let mut statements = Statements::new(&text, &report, progress);
     // Every corner names a texture coordinate and a normal, so one index serves all three.
     let read = tobj::load_obj_buf(&mut statements, &tobj::GPU_LOAD_OPTIONS, |names| {
@@ -51,7 +55,7 @@ pub(crate) fn load(path: &Path, progress: &dyn Progress) -> Result<Scene, SceneE
     let asked = mtl::define(
         &materials.unwrap_or_default(),
         &layout.materials,
-        path,
+        (path, files),
         &mut scene,
     );
     let mut fallback = None;

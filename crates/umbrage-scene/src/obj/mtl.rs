@@ -8,25 +8,36 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::{Vec3, Vec4};
 
 use super::{NAMELESS, number, numbers, rest, text};
 use crate::image::{Decoder, ImageError};
-use crate::{AlphaMode, LoadReport, Material, Scene, image, source, uri};
+use crate::{AlphaMode, Files, LoadReport, Material, Scene, image, source, uri};
 
 /// Reads the libraries of one file, each once.
 pub(super) struct Libraries<'a> {
     obj: &'a Path,
+    files: &'a dyn Files,
     report: &'a RefCell<LoadReport>,
-    read: RefCell<HashSet<String>>,
+    /// By path, so that one library is one however it is spelled.
+    read: RefCell<HashSet<PathBuf>>,
 }
 
 impl<'a> Libraries<'a> {
-    pub(super) fn new(obj: &'a Path, report: &'a RefCell<LoadReport>) -> Self {
+    pub(super) fn new(
+        obj: &'a Path,
+        files: &'a dyn Files,
+        report: &'a RefCell<LoadReport>,
+    ) -> Self {
         let read = RefCell::default();
-        Self { obj, report, read }
+        Self {
+            obj,
+            files,
+            report,
+            read,
+        }
     }
 
     /// Reads the libraries that an `mtllib` statement names: one name that may contain spaces, or
@@ -48,12 +59,13 @@ impl<'a> Libraries<'a> {
 
     /// Appends the statements of one library that have a meaning here.
     fn append(&self, name: &str, plain: &mut String) -> Result<(), String> {
-        if self.read.borrow().contains(name) {
+        let file = uri::beside(name, self.obj)?;
+        if self.read.borrow().contains(&file) {
             return Ok(());
         }
-        let bytes = uri::fetch_file(name, self.obj)?;
+        let bytes = self.files.read(&file).map_err(|e| e.to_string())?;
         let text = text::decode(&bytes, Path::new(name)).map_err(|e| e.to_string())?;
-        self.read.borrow_mut().insert(name.to_owned());
+        self.read.borrow_mut().insert(file);
         let mut named = false;
         for (_, statement) in text::statements(&text) {
             named |= statement.split_ascii_whitespace().next() == Some("newmtl");
@@ -96,7 +108,7 @@ fn checked(statement: &str) -> Result<Option<String>, String> {
 pub(super) fn define(
     materials: &[tobj::Material],
     asked: &[String],
-    obj: &Path,
+    (obj, files): (&Path, &dyn Files),
     scene: &mut Scene,
 ) -> Vec<u32> {
     let mut images = Images::default();
@@ -104,7 +116,7 @@ pub(super) fn define(
     for (index, from) in materials.iter().enumerate() {
         let mut material = convert(from);
         if let Some(name) = &from.diffuse_texture {
-            material.base_color_image = images.load(name, obj, scene);
+            material.base_color_image = images.load(name, (obj, files), scene);
         }
         by_name.insert(material.name.clone(), index as u32);
         scene.materials.push(material);
@@ -170,7 +182,12 @@ struct Images {
 
 impl Images {
     /// The image of a `map_Kd`; options before its name are skipped.
-    fn load(&mut self, name: &str, obj: &Path, scene: &mut Scene) -> Option<u32> {
+    fn load(
+        &mut self,
+        name: &str,
+        (obj, files): (&Path, &dyn Files),
+        scene: &mut Scene,
+    ) -> Option<u32> {
         let name = match name.starts_with('-') {
             true => name.split_ascii_whitespace().next_back()?,
             false => name,
@@ -179,7 +196,9 @@ impl Images {
         if let Some(&known) = self.known.get(&name) {
             return known;
         }
-        let result = uri::fetch_file(&name, obj).map_err(ImageError::Missing);
+        let bytes = uri::beside(&name, obj);
+        let bytes = bytes.and_then(|file| files.read(&file).map_err(|e| e.to_string()));
+        let result = bytes.map_err(ImageError::Missing);
         let result = result.and_then(|bytes| self.decoder.decode(&bytes));
         let known = image::keep(scene, source::stem(Path::new(&name)), result);
         self.known.insert(name, known);

@@ -11,6 +11,9 @@ use glam::{DAffine3, DMat3, DVec3, DVec4};
 use super::{Local, Part, Rig};
 use crate::{Camera, Instance, Light, Mesh, Scene};
 
+/// Nodes that are posed to find out what mirrors, at most: a second's work.
+const MOST_POSED: usize = 1 << 22;
+
 /// Where everything stands at a time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Posed {
@@ -149,7 +152,8 @@ impl Scene {
     }
 
     /// For each instance, whether it is mirrored: as it stands at rest, or where it has no volume
-    /// then, at the first key of what plays, or the first middle between two, at which it has one.
+    /// then, at the first key of what plays, or the first middle between two, at which it has one;
+    /// of very many keys the first.
     pub(crate) fn mirrored(&self) -> Vec<bool> {
         let of = |posed: &Posed, instance: &Instance| {
             let mesh = self.meshes.get(instance.mesh as usize)?;
@@ -166,7 +170,8 @@ impl Scene {
             (Some(rig), false) => rig.key_times(),
             _ => Vec::new(),
         };
-        for time_s in keys {
+        let most = MOST_POSED / (1 + rest.nodes.len());
+        for time_s in keys.into_iter().take(most.max(2)) {
             let left = open(&found);
             if left.is_empty() {
                 break;

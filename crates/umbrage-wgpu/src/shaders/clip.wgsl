@@ -11,8 +11,6 @@ struct View {
     forward: vec3f,
     width: f32,
     height: f32,
-    // Of a vertex of the world: see world.wgsl.
-    vertex_floats: u32,
     // What f32 leaves of the eye.
     eye_residual: vec3f,
 }

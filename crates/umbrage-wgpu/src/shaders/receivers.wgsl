@@ -27,7 +27,8 @@ struct LightPlan {
     reversed_caps: vec2u,
     range: f32,
     // 0 not drawn, 1 z-pass, 2 z-fail; 4 is added if the light is drawn whatever it reaches, 8 if
-    // all its quads are
+    // all its quads are, 16 if this is a part of a light: what lies between parts changes the
+    // stencil even where a part has nothing to draw
     path: u32,
 }
 
@@ -165,7 +166,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             Call(6u * caps, drawn, 6u * ours.caps.x, number),
             Call(6u * reversed, drawn, 6u * ours.reversed_caps.x, number),
             Call(6u * (ours.tiles.w - ours.tiles.y), drawn, 6u * ours.tiles.y, number),
-            Call(3u, min(drawn, count + caps + reversed), 0u, number),
+            Call(3u, select(min(drawn, count + caps + reversed), drawn, (ours.path & 16u) != 0u), 0u, number),
         );
     }
 }

@@ -1,11 +1,10 @@
 // The one place where shaders read the world: positions, edges, triangles, and where a vertex lies
 // from the eye and from a light. What comes from here has the same bits in every pass. The bind
-// group is ShadowRenderer::world_bind_group, at UMBRAGE_WORLD_GROUP.
+// group is ShadowRenderer::world_bind_group, at UMBRAGE_WORLD_GROUP. Declarations of the arrays, with
+// umbrage_place(vertex), umbrage_edge(edge) and umbrage_corner(corner), come before it: see
+// windows.rs.
 
 @group(UMBRAGE_WORLD_GROUP) @binding(0) var<uniform> umbrage_world_view: View;
-@group(UMBRAGE_WORLD_GROUP) @binding(1) var<storage, read> umbrage_positions: array<f32>;
-@group(UMBRAGE_WORLD_GROUP) @binding(2) var<storage, read> umbrage_edges: array<vec2u>;
-@group(UMBRAGE_WORLD_GROUP) @binding(3) var<storage, read> umbrage_triangles: array<u32>;
 
 // Where something is: rounded to f32, and what that leaves. Two such places are subtracted part by
 // part: where they are near each other, nothing is lost.
@@ -19,31 +18,6 @@ struct UmbragePlace {
 struct UmbrageLight {
     rounded: vec4f,
     residual: vec4f,
-}
-
-fn umbrage_floats(first: u32) -> vec3f {
-    return vec3f(
-        umbrage_positions[first], umbrage_positions[first + 1u], umbrage_positions[first + 2u]);
-}
-
-// Where a vertex is in the world. It has six floats where f32 does not hold the world, else three.
-fn umbrage_place(vertex: u32) -> UmbragePlace {
-    let floats = umbrage_world_view.vertex_floats;
-    let first = floats * vertex;
-    if floats == 3u {
-        return UmbragePlace(umbrage_floats(first), vec3f(0.0));
-    }
-    return UmbragePlace(umbrage_floats(first), umbrage_floats(first + 3u));
-}
-
-// The two vertices of an edge.
-fn umbrage_edge(edge: u32) -> vec2u {
-    return umbrage_edges[edge];
-}
-
-// The vertex at a corner: three times a triangle's number, plus 0, 1 or 2.
-fn umbrage_corner(corner: u32) -> u32 {
-    return umbrage_triangles[corner];
 }
 
 // From one vertex to another.

@@ -7,12 +7,12 @@ use std::fs::Metadata;
 use std::path::Path;
 
 use umbrage_report::bench::{self, BenchReport};
+use umbrage_scene::{Disk, light_file};
 
 use super::interrupt::Interrupt;
 use crate::args::BenchArgs;
 use crate::error::CliError;
 use crate::json;
-use crate::light_file;
 use crate::values::LightChoice;
 
 /// Looks for every file that is to be read.
@@ -27,7 +27,7 @@ pub(super) fn look_for(args: &BenchArgs) -> Result<(), CliError> {
         umbrage_scene::find(scene)?;
     }
     match &args.lights {
-        LightChoice::File(path) => light_file::read(path).map(|_| ()),
+        LightChoice::File(path) => Ok(light_file::read(path, &Disk).map(|_| ())?),
         _ => Ok(()),
     }
 }

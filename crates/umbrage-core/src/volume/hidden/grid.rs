@@ -6,6 +6,7 @@
 use glam::{DVec2, DVec3, UVec2};
 
 use super::sight::{Caster, Sight};
+use crate::volume::cube::{face_of, to_face};
 
 /// Cells, face after face.
 #[derive(Debug, Default)]
@@ -212,31 +213,6 @@ impl Grid {
 
 /// Cells that a caster is in, in the mean: keeps the grid of a heap of large triangles small.
 const MOST_CELLS: usize = 16;
-
-/// Faces +x -x +y -y +z -z.
-fn face_of(ray: DVec3) -> u32 {
-    let size = ray.abs();
-    let axis = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
-    2 * axis + u32::from(ray[axis as usize] < 0.0)
-}
-
-/// Coordinates in which the face's axis is z: a linear map of length and of dot products.
-fn to_face(face: u32, r: DVec3) -> DVec3 {
-    match face {
-        0 => DVec3::new(r.y, r.z, r.x),
-        1 => DVec3::new(r.y, r.z, -r.x),
-        2 => DVec3::new(r.z, r.x, r.y),
-        3 => DVec3::new(r.z, r.x, -r.y),
-        4 => r,
-        _ => DVec3::new(r.x, r.y, -r.z),
-    }
-}
 
 /// One side of the pyramid |x| <= z, |y| <= z.
 fn clip(polygon: &[DVec3; 16], len: usize, plane: usize) -> ([DVec3; 16], usize) {

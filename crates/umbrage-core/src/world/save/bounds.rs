@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::SavedWorldError;
 use super::layout::Section;
-use crate::world::{Cluster, LANES, Node, World};
+use crate::world::{Cluster, LANES, Node, World, is_place};
 
 /// `mesh_triangles`: how many triangles the mesh has that `source` points into.
 pub(super) fn check(world: &World, mesh_triangles: u64) -> Result<(), SavedWorldError> {
@@ -15,8 +15,12 @@ pub(super) fn check(world: &World, mesh_triangles: u64) -> Result<(), SavedWorld
     let triangles = world.triangles.len() as u32;
     let positions = world.positions.len() as u32;
     let edges = world.edges.vertices.len() as u32;
-    each(Section::Positions, &world.positions, |_, p| p.is_finite())?;
-    each(Section::Residuals, &world.residuals, |_, p| p.is_finite())?;
+    each(Section::Positions, &world.positions, |_, p| {
+        is_place(p.as_dvec3())
+    })?;
+    each(Section::Residuals, &world.residuals, |_, p| {
+        is_place(p.as_dvec3())
+    })?;
     each(Section::Triangles, &world.triangles, |_, t| {
         (t[0] < positions) & (t[1] < positions) & (t[2] < positions)
     })?;

@@ -70,7 +70,7 @@ impl Technique for InFrame {
             channel: ALPHA,
         });
         let slots = Slot::all(given.plan, self.plan, drawn);
-        let slots = Slot::upload(&given.gpu.device, &slots);
+        let slots = Slot::upload(given.gpu, &slots);
         self.slots = Some(self.painter.bind(given.gpu, &slots));
         Ok(())
     }

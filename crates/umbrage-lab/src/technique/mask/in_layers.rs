@@ -74,7 +74,12 @@ impl InLayers {
         };
         let low = match divisor {
             1 => None,
-            _ => Some(LowFrame::new(gpu, divisor, layer_format(of))?),
+            _ => Some(LowFrame::new(
+                gpu,
+                shadows.world_windows(),
+                divisor,
+                layer_format(of),
+            )?),
         };
         let counted_by = low.as_ref().map_or(shadows, |low| &low.shadows);
         let painter = Painter::new(gpu, counted_by, plan, layer_format(of));
@@ -139,7 +144,7 @@ impl Technique for InLayers {
             }),
         };
         let slots = Slot::all(given.plan, self.plan, self.placed.iter().copied());
-        let slots = Slot::upload(device, &slots);
+        let slots = Slot::upload(given.gpu, &slots);
         self.stack = Some(Stack {
             slots: self.painter.bind(given.gpu, &slots),
             reading: self.masks.bind(given.gpu, &texture, &slots),

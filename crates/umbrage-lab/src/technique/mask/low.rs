@@ -7,7 +7,8 @@
 
 use umbrage::frame::bounds::light_rect;
 use umbrage::{
-    Extrusion, Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, Uploaded, View, VolumeColor,
+    Extrusion, Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, Uploaded, View,
+    VolumeColor, WorldWindows,
 };
 
 use super::low_depth::LowDepth;
@@ -35,6 +36,7 @@ impl LowFrame {
     /// For masks of `format`.
     pub(crate) fn new(
         gpu: &Gpu,
+        windows: WorldWindows,
         divisor: u32,
         format: wgpu::TextureFormat,
     ) -> Result<Self, GpuError> {
@@ -45,6 +47,7 @@ impl LowFrame {
             depth_clamp: gpu.depth_clamp,
             extrusion: Extrusion::Infinite,
             volume_color: VolumeColor::None,
+            windows,
         };
         let shadows = ShadowRenderer::new(&gpu.device, &options)?;
         Ok(Self {

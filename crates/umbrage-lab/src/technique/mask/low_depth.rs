@@ -4,7 +4,7 @@
 //! Vertices are those of `primary.wgsl`, by the rules of the surface's own: the same clip positions,
 //! the same triangles left out.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
+use umbrage::{CLIP_WGSL, ShadowRenderer};
 use wgpu::Texture;
 
 use crate::gbuffer::{DEPTH_STENCIL, whole};
@@ -21,7 +21,7 @@ impl LowDepth {
     pub(super) fn new(gpu: &Gpu, shadows: &ShadowRenderer) -> Self {
         let source = format!(
             "{CLIP_WGSL}\n{}\n{}",
-            world_wgsl(0),
+            shadows.world_wgsl(0),
             include_str!("../../shaders/primary.wgsl")
         );
         let device = &gpu.device;

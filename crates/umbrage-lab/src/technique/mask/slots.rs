@@ -1,8 +1,8 @@
 //! Where each light's mask is kept: a layer and a channel, and the value it starts from.
 
+use crate::gpu::Gpu;
 use bytemuck::{Pod, Zeroable};
 use umbrage::{FramePlan, LightPath};
-use wgpu::util::DeviceExt as _;
 
 use super::pack::Placed;
 use super::plan::MaskPlan;
@@ -45,8 +45,8 @@ impl Slot {
     }
 
     /// On the GPU.
-    pub(crate) fn upload(device: &wgpu::Device, slots: &[Self]) -> wgpu::Buffer {
-        device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    pub(crate) fn upload(gpu: &Gpu, slots: &[Self]) -> wgpu::Buffer {
+        gpu.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("mask slots"),
             contents: bytemuck::cast_slice(slots),
             usage: wgpu::BufferUsages::STORAGE,

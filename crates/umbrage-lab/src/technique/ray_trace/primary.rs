@@ -1,7 +1,7 @@
 //! The number of the triangle seen at each pixel: rays start from its plane, which no rounded
 //! distance can leave, and never meet the triangle itself.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
+use umbrage::{CLIP_WGSL, ShadowRenderer};
 use wgpu::{TextureFormat, TextureUsages};
 
 use crate::gbuffer::{DEPTH_STENCIL, texture, whole};
@@ -20,7 +20,7 @@ impl Primary {
     pub(super) fn new(gpu: &Gpu, shadows: &ShadowRenderer) -> Self {
         let source = format!(
             "{CLIP_WGSL}\n{}\n{}",
-            world_wgsl(0),
+            shadows.world_wgsl(0),
             include_str!("../../shaders/primary.wgsl")
         );
         let device = &gpu.device;

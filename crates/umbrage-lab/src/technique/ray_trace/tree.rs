@@ -169,22 +169,20 @@ fn corners(world: &World, first: usize) -> Vec<Vec4> {
 }
 
 fn buffer(gpu: &Gpu, label: &'static str, bytes: &[u8]) -> Result<wgpu::Buffer, GpuError> {
-    use wgpu::util::DeviceExt as _;
     gpu.check_storage(label, bytes.len())?;
     let nothing = [0; 48];
-    Ok(gpu
-        .device
-        .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(label),
-            contents: if bytes.is_empty() { &nothing } else { bytes },
-            usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-        }))
+    Ok(gpu.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents: if bytes.is_empty() { &nothing } else { bytes },
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
+    }))
 }
 
 fn too_large(what: &'static str, needed: u64, gpu: &Gpu) -> RenderError {
     RenderError::BufferTooLarge {
         what,
         needed,
+        limit_name: "max_storage_buffer_binding_size",
         limit: gpu.device.limits().max_storage_buffer_binding_size,
     }
 }

@@ -1,7 +1,6 @@
 //! A light's casters into the faces of its map.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer, world_wgsl};
-use wgpu::util::DeviceExt as _;
+use umbrage::{CLIP_WGSL, ShadowRenderer};
 
 use super::casters::Casters;
 use super::face::Face;
@@ -46,9 +45,8 @@ impl CasterPass {
         let types = [uniform, STORAGE].map(buffer);
         let stage = wgpu::ShaderStages::VERTEX;
         let map_layout = layout(gpu, "shadow map casters", stage, types);
-        let world_layout = shadows.world_bind_group_layout();
         Self {
-            pipeline: pipeline(gpu, [&map_layout, world_layout], bias),
+            pipeline: pipeline(gpu, shadows, &map_layout, bias),
             map_layout,
         }
     }
@@ -72,13 +70,11 @@ impl CasterPass {
             mapped_at_creation: false,
         });
         write_faces(gpu, &faces, looks);
-        let list = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("shadow map casters"),
-                contents: bytemuck::cast_slice(triangles),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
+        let list = gpu.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("shadow map casters"),
+            contents: bytemuck::cast_slice(triangles),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
         Ok(Drawing {
             binding: bind(
                 gpu,
@@ -137,10 +133,16 @@ pub(super) fn write_faces(gpu: &Gpu, buffer: &wgpu::Buffer, faces: &[Face]) {
 }
 
 /// Casters, both sides: which of them cast was decided before.
-fn pipeline(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 2], bias: Bias) -> wgpu::RenderPipeline {
+fn pipeline(
+    gpu: &Gpu,
+    shadows: &ShadowRenderer,
+    map_layout: &wgpu::BindGroupLayout,
+    bias: Bias,
+) -> wgpu::RenderPipeline {
+    let layouts = [map_layout, shadows.world_bind_group_layout()];
     let source = [
         CLIP_WGSL,
-        &world_wgsl(1),
+        &shadows.world_wgsl(1),
         include_str!("../../shaders/shadow_face.wgsl"),
         include_str!("../../shaders/shadow_caster.wgsl"),
     ]

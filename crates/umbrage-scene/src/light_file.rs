@@ -1,6 +1,7 @@
-//! Light files: `--lights FILE.json`.
+//! Light files: lights of their own, beside a scene.
 //!
-//! A JSON array, one object a light. All keys but the ones a type needs may be left out:
+//! Takes a path; gives lights whose values are in bounds, or names the light at fault: nothing is
+//! repaired. A JSON array, one object a light. All keys but the ones a type needs may be left out:
 //!
 //! ```json
 //! [
@@ -16,13 +17,13 @@
 //! colours linear, intensities candela (lux for directional ones), angles half angles of the cone
 //! in degrees: as in glTF's KHR_lights_punctual.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
-use umbrage_scene::{Light, LightKind};
 
-use crate::error::CliError;
+use crate::{Files, Light, LightKind, SceneError};
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -64,28 +65,40 @@ fn outer() -> f32 {
     45.0
 }
 
-/// Reads a light file; errors name the file and the light.
-pub(crate) fn read(path: &Path) -> Result<Vec<Light>, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, error))?;
-    parse(&text).map_err(|why| CliError::file(path, why))
+/// Reads the light file at `path`.
+///
+/// # Errors
+/// What `files` refuses, or [`SceneError::LightFile`] with the light at fault.
+pub fn read(path: &Path, files: &dyn Files) -> Result<Vec<Light>, SceneError> {
+    let bytes = files.read(path)?;
+    parse(&bytes).map_err(|(item, what)| SceneError::LightFile {
+        path: path.to_owned(),
+        item,
+        what,
+    })
 }
 
-fn parse(text: &str) -> Result<Vec<Light>, String> {
-    let items: Vec<serde_json::Value> = serde_json::from_str(text)
-        .map_err(|error| format!("not a JSON array of lights: {error}"))?;
+/// The lights, or the item at fault and what is wrong with it.
+fn parse(bytes: &[u8]) -> Result<Vec<Light>, (String, String)> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let items: Vec<serde_json::Value> = serde_json::from_slice(bytes).map_err(|error| {
+        let what = format!("not a JSON array of lights: {error}");
+        ("the file".to_owned(), what)
+    })?;
     let mut lights: Vec<Light> = Vec::with_capacity(items.len());
+    let mut names = HashSet::new();
     for (number, value) in items.into_iter().enumerate() {
-        let called = value
-            .get("name")
-            .and_then(|name| name.as_str())
-            .map(|name| format!(" ({name:?})"));
+        let called = value.get("name").and_then(|name| name.as_str());
+        let called = called.map(|name| format!(" ({name:?})"));
         let place = format!("light {number}{}", called.unwrap_or_default());
-        let item: Item =
-            serde_json::from_value(value).map_err(|error| format!("{place}: {error}"))?;
-        let light = to_light(item, number).map_err(|why| format!("{place}: {why}"))?;
-        if lights.iter().any(|other| other.name == light.name) {
-            return Err(format!("{place}: an earlier light has this name"));
-        }
+        let light = serde_json::from_value(value)
+            .map_err(|error| error.to_string())
+            .and_then(|item| to_light(item, number));
+        let light = match light {
+            Ok(light) if names.insert(light.name.clone()) => light,
+            Ok(_) => return Err((place, "an earlier light has this name".to_owned())),
+            Err(what) => return Err((place, what)),
+        };
         lights.push(light);
     }
     Ok(lights)
@@ -111,11 +124,11 @@ fn to_light(item: Item, number: usize) -> Result<Light, String> {
         (None, Type::Directional) => DVec3::ZERO,
         (None, _) => return Err("\"position\" is missing".to_owned()),
     };
+    if !position.as_vec3().is_finite() {
+        return Err("\"position\" must be finite in 32 bits".to_owned());
+    }
     let direction = match (item.direction, item.kind) {
-        (Some(direction), _) => {
-            let unit = DVec3::from(direction).try_normalize();
-            unit.ok_or("\"direction\" has no length")?
-        }
+        (Some(direction), _) => unit(direction.into()).ok_or("\"direction\" has no length")?,
         (None, Type::Point) => DVec3::NEG_Y,
         (None, _) => return Err("\"direction\" is missing".to_owned()),
     };
@@ -143,6 +156,12 @@ fn to_light(item: Item, number: usize) -> Result<Light, String> {
     })
 }
 
+/// Of any finite length, however small or large.
+fn unit(direction: DVec3) -> Option<DVec3> {
+    let longest = direction.abs().max_element();
+    (direction / longest).try_normalize()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -156,7 +175,7 @@ mod tests {
             .take_while(|line| !line.contains("```"))
             .map(|line| line.trim_start_matches("//!"))
             .collect();
-        let lights = parse(&example).unwrap();
+        let lights = parse(example.as_bytes()).unwrap();
         let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
         assert_eq!(names, ["lamp", "light_1", "light_2"]);
         assert_eq!(lights[0].range, Some(12.0));
@@ -195,7 +214,8 @@ mod tests {
                 ["light 1", "name"],
             ),
         ] {
-            let error = parse(text).unwrap_err();
+            let (item, what) = parse(text.as_bytes()).unwrap_err();
+            let error = format!("{item}: {what}");
             assert!(
                 parts.iter().all(|part| error.contains(part)),
                 "{text}: {error}"
