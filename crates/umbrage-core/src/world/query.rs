@@ -62,10 +62,7 @@ impl Reach {
             }),
             _ => None,
         };
-        let [center, residual] = match light.is_directional() {
-            true => [Vec3::ZERO; 2],
-            false => split(light.position),
-        };
+        let [center, residual] = split(light.position);
         Self {
             center,
             slack: residual.length(),
