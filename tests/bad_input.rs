@@ -10,7 +10,7 @@ use std::fs;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use umbrage_core::world::World;
 use umbrage_core::{Casting, Mesh};
 
@@ -107,8 +107,8 @@ fn seeds_of_saved_worlds_are_of_this_format() {
     }
 }
 
-/// No triangle, one, more than a cluster, and edges with many triangles.
-fn saved_meshes() -> [(&'static str, Mesh); 4] {
+/// No triangle, one, more than a cluster, edges with many triangles, and places beyond f32.
+fn saved_meshes() -> [(&'static str, Mesh); 5] {
     let strip = |triangles: u32, corner: fn(u32) -> [u32; 3]| Mesh {
         positions: (0..triangles + 2)
             .map(|i| Vec3::new((i / 2) as f32, (i % 2) as f32, (i * i % 5) as f32))
@@ -120,7 +120,15 @@ fn saved_meshes() -> [(&'static str, Mesh); 4] {
     fn rule(t: usize) -> Casting {
         [Casting::Both, Casting::Front, Casting::Back, Casting::None][t % 4]
     }
+    let mut far = strip(3, |t| [t, t + 1, t + 2]);
+    let places: Vec<DVec3> = far
+        .positions
+        .iter()
+        .map(|p| p.as_dvec3() + 1e7 + 1e-3)
+        .collect();
+    far.stand(places);
     [
+        ("far", far),
         ("none", Mesh::default()),
         ("one", strip(1, |t| [t, t + 1, t + 2])),
         ("strip", strip(70, |t| [t, t + 1, t + 2])),

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::Serialize;
 use umbrage_lab::Culls;
 use umbrage_lab::gpu::AdapterChoice;
+use umbrage_stress::CaseId;
 
 use crate::actor::ActorChoice;
 use crate::error::CliError;
@@ -43,6 +44,7 @@ pub(crate) enum Verb {
     Check(CheckArgs),
     Volumes(VolumesArgs),
     Bench(BenchArgs),
+    Stress(StressArgs),
     Gen(GenArgs),
 }
 
@@ -276,6 +278,54 @@ Examples:
   umbrage bench 'gen:city?triangles=1e4' 'gen:city?triangles=1e5' --size 640x360 --size 1280x720 -o scaling
       Rows that differ in one thing only become a plot of time over it
   umbrage bench map.glb --baseline report/report.json --ratio 1.15";
+
+/// Tries to break volumes and masks with seeded cases of hostile geometry, without a scene.
+#[derive(Debug, Args)]
+#[command(after_help = STRESS_EXAMPLES)]
+pub(crate) struct StressArgs {
+    /// Cases, dealt to the families in turn
+    #[arg(long, value_name = "N", default_value = "2000")]
+    pub(crate) cases: u64,
+    /// Seeds the cases
+    #[arg(long, value_name = "S", default_value = "1")]
+    pub(crate) seed: u64,
+    /// How many cases are drawn too, by counter and counter-zfail; with 0 no adapter is needed
+    /// [default: one in 30]
+    #[arg(long, value_name = "N")]
+    pub(crate) render: Option<u64>,
+    /// Begin no case later than this
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) time: Option<f32>,
+    /// Only this family; may be given several times
+    #[arg(long = "family", value_name = "NAME")]
+    pub(crate) families: Vec<String>,
+    /// One case again, by the name that a report gives it
+    #[arg(long, value_name = "FAMILY:SEED", conflicts_with_all = ["cases", "seed", "families"])]
+    pub(crate) case: Option<CaseId>,
+    /// Write the first failures into this folder, each made as small as it still fails
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) results: ResultArgs,
+    /// CPU threads; results are the same with any number [default: all cores]
+    #[arg(long, help_heading = "Run", value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// As for render
+    #[arg(long, help_heading = "Run", value_name = "auto|NAME|cpu", default_value = "auto", value_parser = adapter)]
+    pub(crate) adapter: AdapterChoice,
+}
+
+const STRESS_EXAMPLES: &str = "\
+Every case is checked on the CPU: volumes are closed in integers, and at sampled points the volume's
+own count, by exact signed crossings of its polygons, is compared with the oracle's segment cast. A
+point is ambiguous if the oracle's answer turns when it moves by 2^-30 of its distance from the
+light. Drawn cases are judged as check does. Exit code 1 if anything is wrong or open.
+
+Examples:
+  umbrage stress
+  umbrage stress --cases 100000 --render 3000 --seed 7 --json stress.json
+  umbrage stress --family slivers --family lattice --render 0 --time 60
+  umbrage stress --case soup:9e3779b97f4a7c15 -o failures";
 
 /// Writes a generated world as a .glb file.
 #[derive(Debug, Args)]

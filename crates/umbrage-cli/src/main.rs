@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Verb::Check(args) => verbs::check::run(&args),
         Verb::Volumes(args) => verbs::volumes::run(&args),
         Verb::Bench(args) => verbs::bench::run(&args),
+        Verb::Stress(args) => verbs::stress::run(&args),
         Verb::Gen(args) => verbs::generate::run(&args),
     };
     match done {

@@ -279,6 +279,81 @@ pub(crate) struct VolumesMethod {
     pub(crate) adjacency_bytes_per_triangle: f64,
 }
 
+/// `stress`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressReport {
+    pub(crate) cases: u64,
+    /// Of these, drawn.
+    pub(crate) rendered: u64,
+    /// Counts at points and pixel-lights.
+    pub(crate) samples: u64,
+    pub(crate) wrong: u64,
+    pub(crate) ambiguous: u64,
+    /// Whether every volume is closed, counted in integers.
+    pub(crate) closed: bool,
+    /// Volumes that are not.
+    pub(crate) not_closed: u64,
+    /// Points for which no ray could be counted; no samples.
+    pub(crate) uncounted: u64,
+    pub(crate) point_samples: u64,
+    pub(crate) pixel_samples: u64,
+    pub(crate) seed: u64,
+    /// Of a point, as a share of its distance from the light.
+    pub(crate) tolerance: f64,
+    /// Of pixel-lights, as for check.
+    pub(crate) tolerance_px: f64,
+    pub(crate) tolerance_depth: f64,
+    /// Of the pictures.
+    pub(crate) size: [u32; 2],
+    /// Null where nothing was to be drawn.
+    pub(crate) adapter: Option<String>,
+    /// Whether --time ran out.
+    pub(crate) ended_early: bool,
+    pub(crate) families: Vec<StressFamily>,
+    /// Lights left out of masks, by placement.
+    pub(crate) not_drawn: Vec<StressNotDrawn>,
+    pub(crate) failures: Vec<StressFailure>,
+}
+
+/// Counts of one family.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressFamily {
+    pub(crate) name: &'static str,
+    pub(crate) about: &'static str,
+    pub(crate) cases: u64,
+    pub(crate) rendered: u64,
+    pub(crate) samples: u64,
+    pub(crate) wrong: u64,
+    pub(crate) ambiguous: u64,
+    pub(crate) closed: bool,
+    pub(crate) not_closed: u64,
+}
+
+/// A placement that masks cannot show.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressNotDrawn {
+    pub(crate) name: &'static str,
+    pub(crate) reason: &'static str,
+    /// Left out of a mask.
+    pub(crate) lights: u64,
+}
+
+/// A case that failed.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct StressFailure {
+    /// Its name.
+    pub(crate) case: String,
+    pub(crate) fault: String,
+    /// The command line that tries it again.
+    pub(crate) again: String,
+    /// Of the smaller case; null where none was written.
+    pub(crate) file: Option<String>,
+    /// Of the smaller case.
+    pub(crate) triangles: Option<u64>,
+    /// The command line that shows the failure of the file; null where its masks are right.
+    pub(crate) check: Option<String>,
+}
+
 /// `gen`.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct GenReport {
@@ -347,6 +422,14 @@ mod tests {
              adjacency_bytes_per_triangle",
         );
         has(keys(&LightLayers::default()), "name layers_bound parts");
+        has(
+            keys(&StressReport::default()),
+            "cases rendered samples wrong ambiguous closed families",
+        );
+        has(
+            keys(&StressFamily::default()),
+            "name cases rendered samples wrong ambiguous closed",
+        );
         has(keys(&WorstPixel::default()), "x y light");
         has(keys(&LightsByPath::default()), "zpass zfail skipped");
     }

@@ -10,6 +10,7 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use umbrage_core::{Casting, Light, Mesh, View};
 use umbrage_lab::auto_camera::auto_camera;
+use umbrage_lab::camera;
 use umbrage_lab::seeded_lights::seeded_lights;
 use umbrage_lab::stage::{Stage, StageLight};
 use umbrage_scene::{Camera, Disk, Progress, light_file};
@@ -223,22 +224,12 @@ pub(crate) fn view(
         .filter(|near| *near > 0.0);
     let near =
         near.unwrap_or_else(|| (1e-4 * diagonal(&stage.scenery())).clamp(f32::MIN_POSITIVE, 0.1));
-    Ok(to_view(&camera, stage.local(camera.position), near, size))
-}
-
-fn to_view(camera: &Camera, eye: DVec3, near: f32, size: [u32; 2]) -> View {
-    let right = camera.forward.cross(camera.up).normalize();
-    let scale_y = (1.0 / (camera.fovy_rad * 0.5).tan()) as f32;
-    View {
-        eye,
-        right: right.as_vec3(),
-        up: camera.up.as_vec3(),
-        forward: camera.forward.as_vec3(),
+    Ok(camera::view(
+        &camera,
+        stage.local(camera.position),
         near,
-        scale_x: scale_y * size[1] as f32 / size[0] as f32,
-        scale_y,
         size,
-    }
+    ))
 }
 
 fn no_camera(wanted: &str, cameras: &[Camera]) -> CliError {
@@ -274,22 +265,6 @@ mod tests {
     use super::*;
     use crate::args::{Cli, Verb};
     use clap::Parser;
-
-    #[test]
-    fn a_camera_becomes_the_view_that_looks_the_same_way() {
-        let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 1.0, 8.0));
-        let camera = Camera::look_at("c", eye, target, 1.0);
-        let ours = to_view(&camera, eye, 0.1, [640, 360]);
-        let theirs = View::look_at(eye.as_vec3(), target.as_vec3(), 1.0, 0.1, [640, 360]);
-        for (a, b) in [
-            (ours.right, theirs.right),
-            (ours.up, theirs.up),
-            (ours.forward, theirs.forward),
-        ] {
-            assert!(a.distance(b) < 1e-6, "{a} {b}");
-        }
-        assert!((ours.scale_x - theirs.scale_x).abs() < 1e-6);
-    }
 
     #[test]
     fn a_missing_camera_is_bad_input_that_lists_the_others() {

@@ -25,8 +25,9 @@ pub enum LightShape {
 
 /// A light as the shadow system sees it: no colour, no intensity.
 ///
-/// Facing, eye count and oracle use the position as it is; the GPU has 48 bits of it. A light that is
-/// none ([`Light::is_usable`]) is an error nowhere: it gets an empty volume, and is skipped in plans.
+/// Facing, eye count and oracle use the position as it is; the GPU has 48 bits of it. A light that
+/// is none ([`Light::is_usable`]) is an error nowhere: it gets an empty volume, and is skipped in
+/// plans.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// World space, relative to the world origin.
@@ -48,6 +49,21 @@ impl Light {
         .to_array()
     }
 
+    /// Whether it can shine: its position is finite in f32 and its range above zero, its direction is of
+    /// unit length and its cone has an angle, as far as its shape uses them.
+    pub fn is_usable(&self) -> bool {
+        let is_unit = |direction: Vec3| (direction.length_squared() - 1.0).abs() < 1e-2;
+        let shines = self.position.as_vec3().is_finite() && self.range > 0.0;
+        match self.shape {
+            LightShape::Point => shines,
+            LightShape::Spot {
+                direction,
+                cos_outer,
+            } => shines && is_unit(direction) && (-1.0..=1.0).contains(&cos_outer),
+            LightShape::Directional { direction } => is_unit(direction),
+        }
+    }
+
     /// [`Light::homogeneous`] as two f32 each (see [`place`]): rounded, and what that leaves.
     pub fn homogeneous_f32(&self) -> [[f32; 4]; 2] {
         let [x, y, z, w] = self.homogeneous();
@@ -58,21 +74,6 @@ impl Light {
     /// The position rounded to f32, and what that leaves.
     pub fn position_f32(&self) -> [Vec3; 2] {
         place::split(self.position)
-    }
-
-    /// Whether it can shine: its position is finite and its range above zero, its direction is of
-    /// unit length and its cone has an angle, as far as its shape uses them.
-    pub fn is_usable(&self) -> bool {
-        let is_unit = |direction: Vec3| (direction.length_squared() - 1.0).abs() < 1e-2;
-        let shines = self.position.is_finite() && self.range > 0.0;
-        match self.shape {
-            LightShape::Point => shines,
-            LightShape::Spot {
-                direction,
-                cos_outer,
-            } => shines && is_unit(direction) && (-1.0..=1.0).contains(&cos_outer),
-            LightShape::Directional { direction } => is_unit(direction),
-        }
     }
 
     /// Whether the light comes from infinitely far.

@@ -571,3 +571,40 @@ fn quads_of_the_prefix_do_matter() {
     });
     assert!(crossed.count() > 20);
 }
+
+/// A light within 3e-7 m of a corner of a triangle of metres: as seen by the other corners it is in
+/// the plane, where `plane . r` is rounding of more than the margin by which a caster must be nearer.
+/// The triangle hid itself, and cast no shadow at all.
+#[test]
+fn a_light_beside_a_corner_does_not_let_the_triangle_hide_itself() {
+    let found = [
+        (
+            [
+                Vec3::new(3.3333712, -1.128706, -2.4958916),
+                Vec3::new(1.8849528, -0.24019098, -3.2375653),
+                Vec3::new(2.4892647, -1.0304615, -1.989162),
+            ],
+            Vec3::new(3.333371, -1.128706, -2.4958913),
+        ),
+        (
+            [
+                Vec3::new(1.5801172, -3.5471287, 0.650249),
+                Vec3::new(3.223247, -2.8404763, 1.4731326),
+                Vec3::new(2.5183792, -4.611724, 0.8934684),
+            ],
+            Vec3::new(1.5801172, -3.5471284, 0.650249),
+        ),
+    ];
+    for (positions, light) in found {
+        let mesh = Mesh {
+            positions: positions.to_vec(),
+            triangles: vec![[0, 1, 2]],
+            casting: vec![Casting::Both],
+            ..Mesh::default()
+        };
+        let world = World::build(&mesh).unwrap();
+        let (before, after) = before_and_after(&world, &point_light(light, 5.0));
+        assert_eq!(triangles(&before), [0]);
+        assert_eq!(triangles(&after), [0], "seen from {light}");
+    }
+}

@@ -5,9 +5,12 @@ mod common;
 use std::fs;
 use std::path::PathBuf;
 
+use glam::Vec3;
+
 use common::{grid, strewn_soup};
+use umbrage_core::volume::{VolumeBuilder, Volumes};
 use umbrage_core::world::{EdgeUse, Node, SavedWorldError, World};
-use umbrage_core::{Fingerprint, Mesh};
+use umbrage_core::{Casting, Fingerprint, Light, LightShape, Mesh};
 
 /// A path in a folder of its own, removed with it.
 struct Place(PathBuf);
@@ -224,5 +227,30 @@ fn lanes_without_a_triangle_stay_empty() {
         world.clusters.to_mut()[0].casts_front |= 1 << lane;
         world.save(&place.file(), mesh.fingerprint()).unwrap();
         assert_eq!(place.open(mesh.fingerprint()).is_ok(), lane < 8, "{lane}");
+    }
+}
+
+/// Found by fuzzing saved worlds: with a radius below zero the bound on rounding is too, and a
+/// triangle faces the light and away from it. Its volume closes still.
+#[test]
+fn planes_that_face_both_ways_close_their_volumes() {
+    let place = Place::new("planes");
+    let mut mesh = grid(4);
+    mesh.casting.fill(Casting::Both);
+    let lights = [0.0, 0.5].map(|height| Light {
+        position: Vec3::new(0.3, height, 0.2).into(),
+        range: f32::INFINITY,
+        shape: LightShape::Point,
+    });
+    for radius in [-1e9, f32::NEG_INFINITY, f32::NAN, f32::INFINITY] {
+        let mut world = World::build(&mesh).unwrap();
+        for planes in world.planes.clusters.to_mut() {
+            planes.radius = radius;
+        }
+        world.save(&place.file(), mesh.fingerprint()).unwrap();
+        let opened = place.open(mesh.fingerprint()).unwrap();
+        let mut volumes = Volumes::default();
+        VolumeBuilder::default().settle(&opened, &lights, |_| true, &mut volumes);
+        volumes.check_closed(&opened).unwrap();
     }
 }

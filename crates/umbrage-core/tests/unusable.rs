@@ -11,11 +11,11 @@ use umbrage_core::volume::{
     range_first,
 };
 use umbrage_core::world::{Layer, Subset, World, WorldError, query};
-use umbrage_core::{Casting, Light, LightShape, Mesh, View};
+use umbrage_core::{Casting, Cull, Culls, Light, LightShape, Mesh, View};
 
 fn light(position: Vec3, range: f32, shape: LightShape) -> Light {
     Light {
-        position: position.into(),
+        position: position.as_dvec3(),
         range,
         shape,
     }
@@ -117,8 +117,11 @@ fn lights_at_the_edge_of_what_is_one_are_built_and_close() {
             let unusable = LightPath::Skipped(SkipReason::Unusable);
             assert_ne!(plan.path, unusable, "{light:?}");
         }
-        // The first reaches everything.
-        assert!(volumes.lights[0].facing_triangles > 0);
+        // The first reaches everything, and so does the directional one.
+        for light in [0, lights.len() - 1] {
+            let subset = volumes.lights[light].subset_triangles;
+            assert_eq!(subset as usize, world.triangles.len());
+        }
     }
 }
 
@@ -238,4 +241,23 @@ fn no_triangle_and_no_light_are_a_world_and_a_plan() {
         assert_eq!(plan.lights.len(), lights.len());
         assert_eq!(plan.drawn().count(), 0);
     }
+}
+
+/// The tree's builder takes quadratic time over equal boxes: 40,000 took half a minute.
+#[test]
+fn the_same_triangle_many_thousand_times_is_soon_a_world() {
+    let mut mesh = strewn_soup(5, 300, 0.2);
+    for _ in 0..20_000 {
+        mesh.triangles.push([0, 1, 2]);
+        mesh.casting.push(Casting::Both);
+    }
+    let world = World::build(&mesh).unwrap();
+    world.validate().unwrap();
+    assert_eq!(world.triangles.len(), 20_300);
+    assert!(world.bvh.nodes.len() < 600, "one leaf for all of them");
+    let mut volumes = Volumes::default();
+    // Looking for hidden ones among so many in one place takes longer, and has a budget.
+    let mut builder = VolumeBuilder::new(Culls::EVERY.without(Cull::Hidden));
+    builder.settle(&world, &usable(), |_| true, &mut volumes);
+    volumes.check_closed(&world).unwrap();
 }

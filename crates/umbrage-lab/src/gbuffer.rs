@@ -113,6 +113,27 @@ pub struct GBufferPass {
 impl GBufferPass {
     /// Uploads what shading needs; positions are the shadow renderer's.
     pub fn new(gpu: &Gpu, stage: &Stage, shadows: &ShadowRenderer) -> Result<Self, GpuError> {
+        Self::with_pipeline(gpu, None, stage, shadows)
+    }
+
+    /// The same for other triangles, or for a world whose buffers were replaced; `shadows` is the
+    /// renderer that it was made for.
+    pub fn renew(
+        &mut self,
+        gpu: &Gpu,
+        stage: &Stage,
+        shadows: &ShadowRenderer,
+    ) -> Result<(), GpuError> {
+        *self = Self::with_pipeline(gpu, Some(self.pipeline.clone()), stage, shadows)?;
+        Ok(())
+    }
+
+    fn with_pipeline(
+        gpu: &Gpu,
+        kept: Option<wgpu::RenderPipeline>,
+        stage: &Stage,
+        shadows: &ShadowRenderer,
+    ) -> Result<Self, GpuError> {
         let stages = ShaderStages::VERTEX_FRAGMENT;
         let attributes = layout(gpu, "gbuffer", stages, [buffer(STORAGE); 4]);
         let texture = binding::texture(
@@ -127,7 +148,8 @@ impl GBufferPass {
             [texture, sampler],
         );
         let world_layout = shadows.world_bind_group_layout();
-        let pipeline = pipeline(gpu, shadows, [&attributes, &images, world_layout]);
+        let layouts = [&attributes, &images, world_layout];
+        let pipeline = kept.unwrap_or_else(|| pipeline(gpu, shadows, layouts));
         let images_of = &stage.scene.images;
         let parts = parts(gpu, stage, &attributes, |image| {
             image_bind_group(gpu, &images, image.map(|i| &images_of[i as usize]))

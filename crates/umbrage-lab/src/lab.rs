@@ -309,7 +309,7 @@ impl Lab {
         }
         let replaced = run.shadows.upload_world(device, queue, &stage.world)?;
         if run.rebuilt(stage) || replaced {
-            run.surface = GBufferPass::new(&self.gpu, stage, &run.shadows)?;
+            run.surface.renew(&self.gpu, stage, &run.shadows)?;
         }
         run.surface.update(&self.gpu, stage);
         let mut frame = self.frame(view);

@@ -6,6 +6,7 @@ pub mod actors;
 pub mod application;
 pub mod auto_camera;
 mod binding;
+pub mod camera;
 pub mod gbuffer;
 pub mod gpu;
 pub mod heat;

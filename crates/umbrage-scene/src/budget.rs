@@ -42,7 +42,13 @@ impl Budget {
         let triangle = Soup::triangle_bytes(shaded, textured);
         for (item, mesh) in used().enumerate() {
             let name = || format!("instance {item} of {}, flattened,", scene.instances.len());
-            self.take(mesh.positions.len() as u64, size_of::<Vec3>(), path, name)?;
+            // Positions and, far from the origin, what f32 leaves of them.
+            self.take(
+                mesh.positions.len() as u64,
+                2 * size_of::<Vec3>(),
+                path,
+                name,
+            )?;
             self.take(mesh.triangles.len() as u64, triangle, path, name)?;
         }
         Ok(())

@@ -19,7 +19,7 @@
 //! | geometry named, zero-filled or placed again and again | error beyond 512 MiB or 64 times the bytes read, soup included |
 //! | an image larger than its bytes can hold, than 2^26 pixels, or than the scene may have left (2^26 pixels, or 64 a byte of image up to 2^28) | left out, counted |
 //! | a file named again and again, in whatever spelling | read once (buffers, libraries) |
-//! | an OBJ polygon of more than 256 corners | a fan, also where it is concave |
+//! | an OBJ polygon of more than 256 corners | halved again and again, also where it is concave |
 //! | no triangles, no lights | a scene |
 //! | glTF lights with colour, intensity, range or cone out of bounds | clamped, counted: intensity below zero is zero, beyond f32 the largest, a range that is not above zero and finite is none |
 //! | the same in a light file ([`light_file`]) | error with the light and the key |

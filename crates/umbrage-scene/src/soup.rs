@@ -141,17 +141,17 @@ fn split(p: DVec3) -> [Vec3; 2] {
 }
 
 impl Soup {
-    /// Where vertex `v` stands relative to the origin.
-    pub fn place(&self, v: u32) -> DVec3 {
-        let residual = self.residuals.get(v as usize).copied();
-        self.positions[v as usize].as_dvec3() + residual.unwrap_or(Vec3::ZERO).as_dvec3()
-    }
-
     /// Bytes of one triangle, with or without normals and texture coordinates.
     pub(crate) fn triangle_bytes(shaded: bool, textured: bool) -> usize {
         let normals = if shaded { size_of::<[Vec3; 3]>() } else { 0 };
         let uvs = if textured { size_of::<[Vec2; 3]>() } else { 0 };
         size_of::<([u32; 3], u32, u32)>() + normals + uvs
+    }
+
+    /// Where vertex `v` stands relative to the origin.
+    pub fn place(&self, v: u32) -> DVec3 {
+        let residual = self.residuals.get(v as usize).copied();
+        self.positions[v as usize].as_dvec3() + residual.unwrap_or(Vec3::ZERO).as_dvec3()
     }
 
     /// Moves instances of `scene` to where `posed` puts them: their positions and normals. Each comes

@@ -1,9 +1,10 @@
 //! Writing a scene as binary glTF.
 //!
 //! Takes a [`Scene`]; gives one `.glb` file that [`load`](crate::load) reads back: geometry,
-//! instances, materials, images, lights, cameras. The digits of f64 are written, but a node's
-//! transform is read as f32, as everywhere in glTF. Invariant: the file appears whole or not at
-//! all, since it is written under another name and then renamed.
+//! instances, materials, images, lights, cameras. A node's transform is
+//! read as f32, as everywhere in glTF; what stands where f32 cannot say hangs on a second node, and
+//! comes back to 48 bits. Invariant: the file appears whole or not at all, since it is written under
+//! another name and then renamed.
 
 mod binary;
 mod json;
@@ -46,8 +47,7 @@ pub fn glb(scene: &Scene, path: &Path) -> Result<(), SceneError> {
         let view = binary.view(&encoded, None);
         images.push(json!({"name": image.name, "bufferView": view, "mimeType": "image/png"}));
     }
-    let nodes = json::nodes(scene, &numbers);
-    let roots: Vec<usize> = (0..nodes.len()).collect();
+    let (nodes, roots) = json::nodes(scene, &numbers);
     let textures: Vec<Value> = (0..images.len()).map(|i| json!({"source": i})).collect();
     let cameras: Vec<Value> = scene.cameras.iter().map(json::camera).collect();
     let lights: Vec<Value> = scene.lights.iter().map(json::light).collect();

@@ -172,7 +172,7 @@ fn a_file_is_read_once_however_it_is_spelled() {
 }
 
 #[test]
-fn a_polygon_of_a_hundred_thousand_corners_is_a_fan() {
+fn a_polygon_of_a_hundred_thousand_corners_has_no_busy_vertex() {
     let corners = 100_000;
     let place = |i: usize| (i as f64 / corners as f64 * std::f64::consts::TAU).sin_cos();
     let vertices = (0..corners).map(|i| format!("v {} {} 0\n", place(i).1, place(i).0));
@@ -181,6 +181,16 @@ fn a_polygon_of_a_hundred_thousand_corners_is_a_fan() {
     let scene = load_text("a.obj", &text).unwrap();
     assert_eq!(scene.meshes[0].triangles.len(), corners - 2);
     assert_eq!(scene.meshes[0].positions.len(), corners);
+    let mut busy = vec![0; corners];
+    let corners = scene.meshes[0].triangles.iter().flatten();
+    corners.for_each(|&v| busy[v as usize] += 1);
+    assert!(busy.into_iter().all(|triangles| triangles <= 40));
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| scene.meshes[0].positions[v as usize].as_dvec3());
+        (b - a).cross(c - a).z * 0.5
+    };
+    let area: f64 = scene.meshes[0].triangles.iter().map(area).sum();
+    assert!((area - std::f64::consts::PI).abs() < 1e-3, "{area}");
 }
 
 #[test]

@@ -22,13 +22,25 @@ pub use verdicts::{ErrorMap, Verdicts};
 pub use worst::{WORST_COUNT, Worst, WrongKind};
 
 /// How to judge.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JudgeOptions {
     /// What the method does with surfaces before the near plane.
     pub near: NearClip,
     /// One flag a light: true if the method did not draw it. Empty: none skipped.
     pub skipped: Vec<bool>,
+    /// Sideways tolerance of the eye ray, pixels.
+    pub tolerance_px: f64,
+}
+
+impl Default for JudgeOptions {
+    fn default() -> Self {
+        Self {
+            near: NearClip::default(),
+            skipped: Vec::new(),
+            tolerance_px: TOLERANCE_PX,
+        }
+    }
 }
 
 impl JudgeOptions {
@@ -41,6 +53,12 @@ impl JudgeOptions {
     /// With these lights skipped by the method.
     pub fn with_skipped(mut self, skipped: Vec<bool>) -> Self {
         self.skipped = skipped;
+        self
+    }
+
+    /// With this sideways tolerance: see [`Verdicts::with_tolerance_px`].
+    pub fn with_tolerance_px(mut self, tolerance_px: f64) -> Self {
+        self.tolerance_px = tolerance_px;
         self
     }
 }
@@ -96,11 +114,9 @@ pub fn judge(
     options: &JudgeOptions,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Judgement {
-    Verdicts::new(oracle, view, lights, options.near, progress).judge(
-        oracle,
-        mask,
-        &options.skipped,
-    )
+    Verdicts::new(oracle, view, lights, options.near, progress)
+        .with_tolerance_px(options.tolerance_px)
+        .judge(oracle, mask, &options.skipped)
 }
 
 impl Verdicts {
@@ -120,7 +136,7 @@ impl Verdicts {
             wrong_lit: 0,
             wrong_shadowed: 0,
             ambiguous: 0,
-            tolerance_px: TOLERANCE_PX,
+            tolerance_px: self.tolerance_px,
             tolerance_depth: TOLERANCE_DEPTH,
             worst: Vec::new(),
             per_light: vec![LightErrors::default(); self.lights.len()],
@@ -142,7 +158,7 @@ impl Verdicts {
             result.ambiguous += errors.ambiguous;
         }
         result.wrong_shadowed = result.wrong - result.wrong_lit;
-        result.worst = worst::choose(oracle, &self.rays, &self.lights, candidates);
+        result.worst = worst::choose(oracle, self, candidates);
         result
     }
 

@@ -17,11 +17,10 @@
 //!     positions: vec![Vec3::new(-9.0, 0.0, 9.0), Vec3::new(9.0, 0.0, 9.0), Vec3::new(0.0, 0.0, -9.0)],
 //!     triangles: vec![[0, 1, 2]],
 //!     casting: vec![Casting::Front],
-//!,
 //!     ..Mesh::default()
 //! };
 //! let view = View::look_at(Vec3::new(0.0, 4.0, 4.0), Vec3::ZERO, 1.0, 0.1, [32, 24]);
-//! let light = Light { position: Vec3::new(0.0, 3.0, 0.0), range: 8.0, shape: LightShape::Point };
+//! let light = Light { position: glam::DVec3::new(0.0, 3.0, 0.0), range: 8.0, shape: LightShape::Point };
 //! let oracle = Oracle::new(&mesh);
 //! let mut mask = oracle.shadow_mask(&view, &[light], NearClip::Clamped);
 //! let options = JudgeOptions::default();

@@ -37,7 +37,7 @@ pub(crate) struct ShadowRay {
     /// The line's second point: the light, or a point far towards it.
     to: DVec3,
     source: Source,
-    /// Distance below which `from` cannot be told from a plane, metres.
+    /// Distance below which `from` cannot be told from a plane, metres; 0 where it is exact.
     touch: f64,
 }
 
@@ -96,11 +96,32 @@ impl Oracle {
         {
             return false;
         }
+        if ray.touch == 0.0 {
+            // The point counts as exact, and so does the side that it is on.
+            return true;
+        }
         let offset = ray.from - corners[0];
         let normal = self.normals[slot];
         let distance = normal.dot(offset).abs() / normal.length();
         // The second term is the rounding of `distance` itself: three products and two sums.
         distance > ray.touch + offset.length() * f64::EPSILON * 4.0
+    }
+
+    /// How many casters cross the open segment from `point` (world space) to the light: one through
+    /// whose edge it runs counts. Range and cone are not asked.
+    pub fn casters(&self, point: [f64; 3], light: &Light) -> u32 {
+        let ray = ShadowRay::new(DVec3::from_array(point), Source::of(light), 0.0);
+        let t_max = match ray.source {
+            Source::Near(_) => 1.0,
+            Source::Far(_) => f64::INFINITY,
+        };
+        let mut count = 0;
+        let along = ray.to - ray.from;
+        self.bvh.visit(ray.from, along, t_max, |slot, t_max| {
+            count += u32::from(self.blocks(slot, &ray));
+            ControlFlow::Continue(t_max)
+        });
+        count
     }
 
     /// The first caster found on the segment, apart from the slots for which `left_out` holds.

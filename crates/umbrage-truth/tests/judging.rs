@@ -92,7 +92,7 @@ fn a_shadow_one_pixel_off_is_wrong() {
 
 /// A wall seen straight on, a shadow edge on it `offset_px` pixels right of the centres of
 /// column 20, and a mask wrong in that column.
-fn edge_beside_centres(offset_px: f32) -> Judgement {
+fn edge_beside_centres(offset_px: f32, options: &JudgeOptions) -> Judgement {
     let mut mesh = Mesh::default();
     let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
     let wall = |x: [f32; 2], y: f32, z: f32| {
@@ -123,18 +123,33 @@ fn edge_beside_centres(offset_px: f32) -> Judgement {
         assert_eq!(mask.get(20, y, 0), offset_px <= 0.0);
         mask.set(20, y, 0, offset_px > 0.0);
     }
-    judged(&oracle, &view, &lights, &mask)
+    judge(&oracle, &view, &lights, &mask, options, &|_, _| ())
 }
 
 #[test]
 fn the_tolerance_is_a_64th_of_a_pixel() {
     for offset in [1.0 / 256.0, -1.0 / 256.0, 1.0 / 65.0, -1.0 / 65.0] {
-        let found = edge_beside_centres(offset);
+        let found = edge_beside_centres(offset, &JudgeOptions::default());
         assert_eq!((found.wrong, found.ambiguous), (0, 64), "{offset}");
     }
     for offset in [1.0 / 32.0, -1.0 / 32.0, 1.0 / 63.0, -1.0 / 63.0] {
-        let found = edge_beside_centres(offset);
+        let found = edge_beside_centres(offset, &JudgeOptions::default());
         assert_eq!((found.wrong, found.ambiguous), (64, 0), "{offset}");
+    }
+}
+
+#[test]
+fn a_stated_tolerance_is_reported_and_reaches_no_further() {
+    let stated = JudgeOptions::default().with_tolerance_px(0.25);
+    for offset in [1.0 / 5.0, -1.0 / 5.0, 0.3, -0.3] {
+        let found = edge_beside_centres(offset, &stated);
+        assert_eq!(found.tolerance_px, 0.25);
+        // The wall's diagonal is that close to one of the centres.
+        let wrong = if offset.abs() > 0.25 { 63..=64 } else { 0..=0 };
+        assert!(wrong.contains(&found.wrong), "{offset}: {found:?}");
+        assert_eq!(found.wrong + found.ambiguous, 64);
+        let usual = edge_beside_centres(offset, &JudgeOptions::default());
+        assert_eq!((usual.wrong, usual.ambiguous), (64, 0), "{offset}");
     }
 }
 

@@ -6,7 +6,7 @@
 //! # On the CPU: lights to volumes
 //!
 //! ```
-//! use glam::Vec3;
+//! use glam::{DVec3, Vec3};
 //! use umbrage::{Casting, Light, LightShape, Mesh, Volumes, VolumeBuilder, World};
 //!
 //! // One triangle, floating: an open mesh casts a closed shadow all the same.
@@ -14,11 +14,10 @@
 //!     positions: vec![Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 1.0, 1.0), Vec3::new(1.0, 1.0, 0.0)],
 //!     triangles: vec![[0, 1, 2]],
 //!     casting: vec![Casting::Both],
-//!,
 //!     ..Mesh::default()
 //! };
 //! let world = World::build(&mesh)?;
-//! let light = Light { position: Vec3::new(0.2, 3.0, 0.2), range: 10.0, shape: LightShape::Point };
+//! let light = Light { position: DVec3::new(0.2, 3.0, 0.2), range: 10.0, shape: LightShape::Point };
 //!
 //! let mut builder = VolumeBuilder::default();
 //! let mut volumes = Volumes::default();
@@ -38,7 +37,7 @@
 //! # let mut world = World::build(&Mesh::default())?;
 //! # let mesh = Mesh { positions: vec![Vec3::ZERO, Vec3::X, Vec3::Z], triangles: vec![[0, 2, 1]],
 //! #     casting: vec![Casting::Both], ..Mesh::default() };
-//! # let lights = [Light { position: Vec3::Y, range: 5.0, shape: LightShape::Point }; 3];
+//! # let lights = [Light { position: DVec3::Y, range: 5.0, shape: LightShape::Point }; 3];
 //! # let (mut builder, mut volumes) = (VolumeBuilder::default(), Volumes::default());
 //! let door = world.insert(&mesh, &Pose::at(DVec3::ZERO))?;
 //! assert_eq!(builder.build(&world, &lights, |_| true, &mut volumes), 3);

@@ -8,7 +8,10 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::{Stop, root};
+use crate::{Stop, browser, root};
+
+/// Tells the tests which Vulkan driver to compare with the usual one.
+const SECOND_DRIVER: &str = "UMBRAGE_SECOND_DRIVER";
 
 /// Tests counted from libtest's result lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,9 +64,13 @@ impl Steps {
         self.run(name, &mut cargo(args), false)
     }
 
-    /// Runs `cargo test` with `args`, and counts the tests.
+    /// Runs `cargo test` with `args`, and counts the tests. They are told of a second Vulkan driver
+    /// where there is one, unless the caller's environment says which.
     pub(crate) fn cargo_test(&mut self, name: &'static str, args: &[&str]) -> Result<(), Stop> {
         let mut command = cargo(&["test"]);
+        if let (None, Some(driver)) = (std::env::var_os(SECOND_DRIVER), browser::vulkan_driver()) {
+            command.env(SECOND_DRIVER, driver);
+        }
         self.run(name, command.args(args), true)
     }
 

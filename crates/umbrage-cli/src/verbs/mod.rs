@@ -6,4 +6,5 @@ pub(crate) mod check;
 pub(crate) mod generate;
 pub(crate) mod inspect;
 pub(crate) mod render;
+pub(crate) mod stress;
 pub(crate) mod volumes;

@@ -36,7 +36,8 @@ fn facing_with<L: Lanes64>(
             back |= exact_back;
         }
         let wound = members.mask & front & cluster.casts_front;
-        let reversed = members.mask & back & cluster.casts_back;
+        // No triangle both ways, whatever a saved world says of its planes: so volumes close.
+        let reversed = members.mask & back & cluster.casts_back & !wound;
         if wound | reversed != 0 {
             chain.push(Chain {
                 cluster: members.cluster,

@@ -55,6 +55,46 @@ impl Boundable for Bounds {
     }
 }
 
+/// More triangles than this in the very same box are one item to the tree's builder, which takes
+/// time quadratic in their number.
+const MANY_IN_ONE_BOX: usize = 64;
+
+/// What to build a tree over, and the triangles of each item unless each is one.
+fn items(bounds: Vec<Bounds>) -> (Vec<Bounds>, Option<Vec<Vec<u32>>>) {
+    let bits =
+        |Bounds(b): &Bounds| [b.min.to_array(), b.max.to_array()].map(|p| p.map(f32::to_bits));
+    let hash = |b: &Bounds| {
+        let mix = |h: u64, &x: &u32| {
+            (h ^ u64::from(x))
+                .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                .rotate_left(29)
+        };
+        bits(b).as_flattened().iter().fold(0, mix)
+    };
+    let mut sorted: Vec<(u64, u32)> = bounds
+        .par_iter()
+        .map(hash)
+        .zip(0..bounds.len() as u32)
+        .collect();
+    sorted.par_sort_unstable();
+    let runs = || sorted.chunk_by(|a, b| a.0 == b.0);
+    if runs().all(|run| run.len() <= MANY_IN_ONE_BOX) {
+        return (bounds, None);
+    }
+    let (mut items, mut members) = (Vec::new(), Vec::new());
+    for run in runs() {
+        let same = |pair: &[(u64, u32)]| {
+            bits(&bounds[pair[0].1 as usize]) == bits(&bounds[pair[1].1 as usize])
+        };
+        let as_one = run.len() > MANY_IN_ONE_BOX && run.windows(2).all(same);
+        for part in run.chunks(if as_one { run.len() } else { 1 }) {
+            items.push(Bounds(bounds[part[0].1 as usize].0));
+            members.push(part.iter().map(|&(_, triangle)| triangle).collect());
+        }
+    }
+    (items, Some(members))
+}
+
 /// Builds over the triangles `kept` of `mesh`; gives the tree and, in leaf order, indices into
 /// `kept`.
 pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
@@ -68,8 +108,9 @@ pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
             Bounds(Aabb::from_points(&corners.map(Vec3A::from)))
         })
         .collect();
+    let (items, members) = items(bounds);
     let tree = build_bvh2(
-        &bounds,
+        &items,
         BvhBuildParams::medium_build(),
         &mut std::time::Duration::default(),
     );
@@ -94,9 +135,14 @@ pub(super) fn build(mesh: &Mesh, kept: &[u32]) -> (Bvh, Vec<u32>) {
         });
         let first = node.first_index as usize;
         if node.is_leaf() {
-            order.extend_from_slice(
-                &tree.primitive_indices[first..first + node.prim_count as usize],
-            );
+            let items = &tree.primitive_indices[first..first + node.prim_count as usize];
+            match &members {
+                None => order.extend_from_slice(items),
+                Some(members) => {
+                    order.extend(items.iter().flat_map(|&item| &members[item as usize]));
+                }
+            }
+            nodes[at].count = order.len() as u32 - nodes[at].first;
         } else {
             stack.push((first + 1, Some(at)));
             stack.push((first, None));

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::objects::{ObjectError, ObjectId, Pose};
 use super::stages::{self, Welded};
-use super::{World, check_input, check_places, objects};
+use super::{World, check_input, check_positions, objects};
 use crate::mesh::Mesh;
 
 /// How the vertices of the mesh that was inserted became those of the object.
@@ -76,7 +76,7 @@ impl World {
         let object = &self.objects[slot];
         let given = &object.given;
         check_length("positions", positions.len(), given.first.len())?;
-        check_places(positions.iter().map(|&p| p.into()))?;
+        check_positions(positions.iter().map(|&p| p.into()))?;
         let mut pairs = (0..).zip(&given.first);
         let parted = pairs.find(|&(v, &first)| positions[v] != positions[first as usize]);
         if let Some((second, &first)) = parted {

@@ -381,7 +381,9 @@ fn check_input(mesh: &Mesh) -> Result<(), WorldError> {
             positions: mesh.positions.len(),
         });
     }
-    check_places((0..mesh.positions.len() as u32).map(|v| mesh.places().at(v)))?;
+    for list in [&mesh.positions, &mesh.residuals] {
+        check_positions(list.iter().map(|p| p.as_dvec3()))?;
+    }
     let vertices = mesh.positions.len();
     for (triangle, indices) in mesh.triangles.iter().enumerate() {
         if let Some(&vertex) = indices.iter().find(|&&v| v as usize >= vertices) {
@@ -395,14 +397,17 @@ fn check_input(mesh: &Mesh) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// That a world can hold vertices there.
-fn check_places(places: impl Iterator<Item = DVec3>) -> Result<(), WorldError> {
-    let mut numbered = places.enumerate();
-    let Some((vertex, p)) = numbered.find(|&(_, p)| !is_place(p)) else {
+/// That a world can hold vertices at these positions.
+fn check_positions(positions: impl IntoIterator<Item = DVec3>) -> Result<(), WorldError> {
+    let found = positions
+        .into_iter()
+        .enumerate()
+        .find(|(_, p)| !is_place(*p));
+    let Some((vertex, p)) = found else {
         return Ok(());
     };
     let limit = World::MAX_COORDINATE;
-    Err(match p.is_finite() {
+    Err(match p.as_vec3().is_finite() {
         true => WorldError::TooFar { vertex, limit },
         false => WorldError::NotFinite { vertex },
     })
@@ -410,7 +415,8 @@ fn check_places(places: impl Iterator<Item = DVec3>) -> Result<(), WorldError> {
 
 /// Whether a world can hold a vertex there.
 fn is_place(p: DVec3) -> bool {
-    p.abs().max_element() <= f64::from(World::MAX_COORDINATE) && !p.is_nan()
+    let most = DVec3::splat(World::MAX_COORDINATE.into());
+    p.abs().cmple(most).all()
 }
 
 struct Stopwatch(Instant);

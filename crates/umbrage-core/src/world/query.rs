@@ -62,7 +62,10 @@ impl Reach {
             }),
             _ => None,
         };
-        let [center, residual] = split(light.position);
+        let [center, residual] = match light.is_directional() {
+            true => [Vec3::ZERO; 2],
+            false => split(light.position),
+        };
         Self {
             center,
             slack: residual.length(),

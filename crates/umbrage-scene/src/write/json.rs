@@ -10,17 +10,17 @@ use crate::{AlphaMode, Camera, Light, LightKind, Material, Scene};
 /// Near plane, in metres, of a camera that has none: glTF demands one.
 const NEAR: f64 = 0.05;
 
-/// Nodes of instances, lights and cameras, in this order.
-pub(super) fn nodes(scene: &Scene, numbers: &[Option<usize>]) -> Vec<Value> {
-    let mut nodes = Vec::new();
+/// Nodes of instances, lights and cameras, in this order; and which of them hang on no other.
+pub(super) fn nodes(scene: &Scene, numbers: &[Option<usize>]) -> (Vec<Value>, Vec<usize>) {
+    let mut nodes = Nodes::default();
     for instance in &scene.instances {
         let Some(mesh) = numbers[instance.mesh as usize] else {
             continue;
         };
         let mut node = json!({"name": instance.name, "mesh": mesh});
+        let t = nodes.rest(&instance.name, instance.transform.translation);
         if instance.transform != glam::DAffine3::IDENTITY {
             let m = instance.transform.matrix3.to_cols_array();
-            let t = instance.transform.translation;
             let rows = [
                 m[0], m[1], m[2], 0.0, m[3], m[4], m[5], 0.0, m[6], m[7], m[8], 0.0, t.x, t.y, t.z,
                 1.0,
@@ -29,25 +29,62 @@ pub(super) fn nodes(scene: &Scene, numbers: &[Option<usize>]) -> Vec<Value> {
         }
         nodes.push(node);
     }
-    let place = |name: &str, position: DVec3, rotation: DQuat| {
-        let (translation, rotation) = (position.to_array(), rotation.normalize().to_array());
+    let place = |nodes: &mut Nodes, name: &str, position: DVec3, rotation: DQuat| {
+        let translation = nodes.rest(name, position).to_array();
+        let rotation = rotation.normalize().to_array();
         json!({"name": name, "translation": translation, "rotation": rotation})
     };
     for (index, light) in scene.lights.iter().enumerate() {
         let direction = light.direction.try_normalize().unwrap_or(DVec3::NEG_Z);
         let rotation = DQuat::from_rotation_arc(DVec3::NEG_Z, direction);
-        let mut node = place(&light.name, light.position, rotation);
+        let mut node = place(&mut nodes, &light.name, light.position, rotation);
         node["extensions"] = json!({"KHR_lights_punctual": {"light": index}});
         nodes.push(node);
     }
     for (index, camera) in scene.cameras.iter().enumerate() {
         let right = camera.forward.cross(camera.up);
         let basis = DMat3::from_cols(right, camera.up, -camera.forward);
-        let mut node = place(&camera.name, camera.position, DQuat::from_mat3(&basis));
+        let mut node = place(
+            &mut nodes,
+            &camera.name,
+            camera.position,
+            DQuat::from_mat3(&basis),
+        );
         node["camera"] = json!(index);
         nodes.push(node);
     }
-    nodes
+    (nodes.all, nodes.roots)
+}
+
+/// Nodes as they are written.
+#[derive(Default)]
+struct Nodes {
+    all: Vec<Value>,
+    roots: Vec<usize>,
+    /// Whether the next one hangs on the last.
+    hangs: bool,
+}
+
+impl Nodes {
+    /// Where the next node stands. What of `position` one f32 does not hold is left to it, and a node
+    /// above it stands where the f32 is.
+    fn rest(&mut self, name: &str, position: DVec3) -> DVec3 {
+        let above = position.as_vec3().as_dvec3();
+        if above == position || !above.is_finite() {
+            return position;
+        }
+        let child = self.all.len() + 1;
+        self.push(json!({"name": name, "translation": above.to_array(), "children": [child]}));
+        self.hangs = true;
+        position - above
+    }
+
+    fn push(&mut self, node: Value) {
+        if !std::mem::take(&mut self.hangs) {
+            self.roots.push(self.all.len());
+        }
+        self.all.push(node);
+    }
 }
 
 /// A light of `KHR_lights_punctual`; its node places it.

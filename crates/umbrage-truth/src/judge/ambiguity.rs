@@ -2,8 +2,8 @@
 //!
 //! Takes a pixel's surface, a light and the verdict; gives yes or no. The verdict is ambiguous if
 //! it is another one (lit, shadowed or no sample)
-//! - for one of eight eye rays, [`TOLERANCE_PX`] away on a circle around the pixel's centre, with
-//!   surface, facing and range found anew; with a clipping near plane also for the plane moved by
+//! - for one of eight eye rays, the sideways tolerance away on a circle around the pixel's centre,
+//!   with surface, facing and range found anew; with a clipping near plane also for the plane moved by
 //!   the depth tolerance; or
 //! - for the surface point moved along its eye ray by [`TOLERANCE_DEPTH`] of its distance: towards
 //!   the eye, against all casters; away from it, against all casters but those that the eye ray
@@ -29,6 +29,10 @@
 //! T-junction that snapping to the grid tears open, what is behind both; and a silhouette quad may
 //! start there, though a coincident triangle goes on (coplanar overlaps). This forgives whatever
 //! happens in a band of 1/32 pixel along the edges of the mesh, nothing inside triangles.
+//!
+//! The sideways tolerance is [`TOLERANCE_PX`] unless a caller states another one, for a rasteriser
+//! whose grid is known to be coarser. Within a wider one, circles of half the radius, of a quarter
+//! and so on are asked too, down to the usual one: what is narrower than the tolerance counts.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -38,7 +42,8 @@ use crate::oracle::{Memory, Oracle, Surface, Verdict};
 use crate::rays::{EyeRays, NearClip};
 use crate::tile::Pixel;
 
-/// Sideways tolerance of the eye ray, pixels: four steps of the rasteriser's 1/256 pixel grid.
+/// Sideways tolerance of the eye ray unless another is stated, pixels: four steps of the
+/// rasteriser's 1/256 pixel grid.
 pub const TOLERANCE_PX: f64 = 1.0 / 64.0;
 /// Tolerance along the eye ray, as a share of the distance: 2^-20.
 pub const TOLERANCE_DEPTH: f64 = 1.0 / (1u64 << 20) as f64;
@@ -68,14 +73,11 @@ pub(super) struct Neighbourhood {
 }
 
 impl Neighbourhood {
-    pub(super) fn of(oracle: &Oracle, rays: &EyeRays, pixel: &Pixel) -> Self {
+    pub(super) fn of(oracle: &Oracle, rays: &EyeRays, pixel: &Pixel, tolerance_px: f64) -> Self {
         let (x, y) = (f64::from(pixel.x) + 0.5, f64::from(pixel.y) + 0.5);
-        let mut sideways: Vec<_> = AROUND
-            .iter()
-            .map(|[dx, dy]| {
-                let ray = rays.ray(x + dx * TOLERANCE_PX, y + dy * TOLERANCE_PX);
-                oracle.surface(&ray, rays.min_distance)
-            })
+        let mut sideways: Vec<_> = radii(tolerance_px)
+            .flat_map(|radius| AROUND.map(|[dx, dy]| (dx * radius, dy * radius)))
+            .map(|(dx, dy)| oracle.surface(&rays.ray(x + dx, y + dy), rays.min_distance))
             .collect();
         let surface = &pixel.surface;
         let primary_changes = sideways.iter().any(|other| {
@@ -125,6 +127,14 @@ impl Neighbourhood {
                 self.between.contains(&slot)
             }) != verdict
     }
+}
+
+/// Of the circles to ask: the tolerance and its halves, down to [`TOLERANCE_PX`].
+fn radii(tolerance_px: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(tolerance_px), |radius| Some(radius / 2.0))
+        .enumerate()
+        .take_while(|&(number, radius)| number == 0 || radius >= TOLERANCE_PX)
+        .map(|(_, radius)| radius)
 }
 
 /// Whether two hits are on the same triangles, coincident ones included.

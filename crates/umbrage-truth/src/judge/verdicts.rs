@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use umbrage_core::{Light, View};
 
 use super::LightErrors;
-use super::ambiguity::Neighbourhood;
+use super::ambiguity::{Neighbourhood, TOLERANCE_PX};
 use super::worst::{Worst, WrongKind};
 use crate::mask::Mask;
 use crate::oracle::{Oracle, Verdict};
@@ -32,6 +32,7 @@ pub struct Verdicts {
     pub(super) size: [u32; 2],
     pub(super) lights: Vec<Light>,
     pub(super) rays: EyeRays,
+    pub(super) tolerance_px: f64,
     tiles: Vec<TileVerdicts>,
 }
 
@@ -97,8 +98,19 @@ impl Verdicts {
             size: view.size,
             lights: lights.to_vec(),
             rays,
+            tolerance_px: TOLERANCE_PX,
             tiles,
         }
+    }
+
+    /// With this sideways tolerance in place of [`TOLERANCE_PX`]: a finite length in pixels. Only
+    /// for a rasteriser whose grid is known to be coarser than 1/256 pixel; judgements report it.
+    pub fn with_tolerance_px(mut self, tolerance_px: f64) -> Self {
+        self.tolerance_px = tolerance_px;
+        for of_light in self.tiles.iter_mut().flat_map(|tile| &mut tile.lights) {
+            of_light.ambiguity = None;
+        }
+        self
     }
 
     /// The oracle's own mask.
@@ -122,9 +134,10 @@ impl Verdicts {
         says_lit: &(impl Fn(u32, u32, usize) -> bool + Sync),
     ) -> Vec<TileErrors> {
         let (rays, lights) = (&self.rays, &self.lights);
+        let around = |x, y| neighbourhood(oracle, rays, [x, y], self.tolerance_px);
         self.tiles
             .par_iter_mut()
-            .map(|tile| tile.errors(oracle, rays, lights, says_lit))
+            .map(|tile| tile.errors(oracle, lights, &around, says_lit))
             .collect()
     }
 
@@ -186,8 +199,8 @@ impl TileVerdicts {
     fn errors(
         &mut self,
         oracle: &Oracle,
-        rays: &EyeRays,
         lights: &[Light],
+        surroundings: &impl Fn(u32, u32) -> Option<Box<Neighbourhood>>,
         says_lit: &impl Fn(u32, u32, usize) -> bool,
     ) -> TileErrors {
         let tile = self.tile;
@@ -212,7 +225,7 @@ impl TileVerdicts {
                 if !has(&ambiguity.known, k) {
                     set(&mut ambiguity.known, k);
                     if around[k].is_none() {
-                        around[k] = neighbourhood(oracle, rays, x, y);
+                        around[k] = surroundings(x, y);
                     }
                     let near = around[k].as_ref();
                     if near.is_some_and(|n| n.is_ambiguous(oracle, &lights[light], verdict)) {
@@ -242,11 +255,17 @@ impl TileVerdicts {
 }
 
 /// Around a pixel that sees a surface.
-fn neighbourhood(oracle: &Oracle, rays: &EyeRays, x: u32, y: u32) -> Option<Box<Neighbourhood>> {
+fn neighbourhood(
+    oracle: &Oracle,
+    rays: &EyeRays,
+    [x, y]: [u32; 2],
+    tolerance_px: f64,
+) -> Option<Box<Neighbourhood>> {
     let ray = rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let surface = oracle.surface(&ray, rays.min_distance)?;
     let pixel = Pixel { x, y, surface };
-    Some(Box::new(Neighbourhood::of(oracle, rays, &pixel)))
+    let found = Neighbourhood::of(oracle, rays, &pixel, tolerance_px);
+    Some(Box::new(found))
 }
 
 fn has(bits: &Bits, k: usize) -> bool {

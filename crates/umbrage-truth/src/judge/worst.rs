@@ -4,11 +4,10 @@
 //! stays the same furthest around the pixel, so that nobody can call them a matter of rounding.
 
 use rayon::prelude::*;
-use umbrage_core::Light;
 
-use super::ambiguity::{AROUND, TOLERANCE_PX};
+use super::Verdicts;
+use super::ambiguity::AROUND;
 use crate::oracle::{Oracle, Verdict};
-use crate::rays::EyeRays;
 
 /// Largest number of wrong samples listed.
 pub const WORST_COUNT: usize = 32;
@@ -16,8 +15,8 @@ pub const WORST_COUNT: usize = 32;
 const MEASURED: usize = 1024;
 /// Listed samples of one light, as long as other lights have any.
 const PER_LIGHT: usize = 4;
-/// Doublings of the tolerance that are tried: up to 8 pixels.
-const DOUBLINGS: i32 = 9;
+/// Largest radius that is tried, pixels.
+const FIRMEST_PX: f64 = 8.0;
 
 /// Which way a sample is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,18 +45,13 @@ pub struct Worst {
 
 /// The firmest of `candidates`, at most [`WORST_COUNT`], no more than a few of one light while
 /// others have any.
-pub(super) fn choose(
-    oracle: &Oracle,
-    rays: &EyeRays,
-    lights: &[Light],
-    candidates: Vec<Worst>,
-) -> Vec<Worst> {
+pub(super) fn choose(oracle: &Oracle, of: &Verdicts, candidates: Vec<Worst>) -> Vec<Worst> {
     let stride = candidates.len().div_ceil(MEASURED).max(1);
     let mut measured: Vec<Worst> = candidates
         .into_par_iter()
         .step_by(stride)
         .map(|wrong| Worst {
-            firm_px: firmness(oracle, rays, lights, &wrong),
+            firm_px: firmness(oracle, of, &wrong),
             ..wrong
         })
         .collect();
@@ -66,7 +60,7 @@ pub(super) fn choose(
             .total_cmp(&a.firm_px)
             .then_with(|| scattered(a).cmp(&scattered(b)))
     });
-    let mut listed = vec![0; lights.len()];
+    let mut listed = vec![0; of.lights.len()];
     let (mut chosen, others): (Vec<Worst>, Vec<Worst>) = measured.into_iter().partition(|wrong| {
         listed[wrong.light as usize] += 1;
         listed[wrong.light as usize] <= PER_LIGHT
@@ -84,18 +78,18 @@ fn scattered(wrong: &Worst) -> u64 {
         .rotate_right(29)
 }
 
-fn firmness(oracle: &Oracle, rays: &EyeRays, lights: &[Light], wrong: &Worst) -> f64 {
-    let light = &lights[wrong.light as usize];
+fn firmness(oracle: &Oracle, of: &Verdicts, wrong: &Worst) -> f64 {
+    let light = &of.lights[wrong.light as usize];
     let verdict = match wrong.kind {
         WrongKind::Lit => Verdict::Shadowed,
         WrongKind::Shadowed => Verdict::Lit,
     };
     let (x, y) = (f64::from(wrong.x) + 0.5, f64::from(wrong.y) + 0.5);
-    let mut firm = TOLERANCE_PX;
-    for doubling in 1..=DOUBLINGS {
-        let radius = TOLERANCE_PX * 2f64.powi(doubling);
+    let mut firm = of.tolerance_px;
+    while 2.0 * firm <= FIRMEST_PX {
+        let radius = 2.0 * firm;
         let holds = |[dx, dy]: &[f64; 2]| {
-            oracle.verdict(rays, x + dx * radius, y + dy * radius, light) == verdict
+            oracle.verdict(&of.rays, x + dx * radius, y + dy * radius, light) == verdict
         };
         if !AROUND.iter().all(holds) {
             break;

@@ -105,8 +105,12 @@ impl Sight {
         });
         let (plane, size) = match self.shape {
             Shape::Point(_) => {
-                let lengths: f64 = rays.iter().map(|r| r.length()).product();
-                let steep = turn.abs() > GRAZING * normal.length() * a.length()
+                let lengths = rays.map(DVec3::length);
+                // By the longest ray: beside a corner the light is in the plane as the others see it,
+                // and `plane . r` is rounding.
+                let longest = lengths.into_iter().fold(0.0, f64::max);
+                let lengths: f64 = lengths.into_iter().product();
+                let steep = turn.abs() > GRAZING * normal.length() * longest
                     && normal.length() > GRAZING * ab.length() * ac.length();
                 (
                     normal / turn,
