@@ -2,7 +2,7 @@
 //! crossing counts on the CPU and by masks on the GPU, both against the oracle.
 //!
 //! [`families`] make [`Case`]s from seeds; [`points`] asks a case's volumes at points, [`masks`]
-//! draws it; [`campaign`] does so thousands of times and counts; [`mod@shrink`] and [`file`] make a
+//! draws it; [`campaign`] does so thousands of times and counts; [`mod@shrink`] and [`mod@file`] make a
 //! failure small and keep it.
 //!
 //! ```
