@@ -1,8 +1,7 @@
 //! The `umbrage` command line: `umbrage <verb> SCENE [options]`.
 //!
 //! Takes arguments, gives an exit code: 0 success, 1 a check failed, 2 bad input or usage,
-//! 3 no usable adapter, or its device
-//! was lost. Each verb has its file in `verbs/`.
+//! 3 no usable adapter, or its device was lost. Each verb has its file in `verbs/`.
 #![forbid(unsafe_code)]
 
 mod actor;

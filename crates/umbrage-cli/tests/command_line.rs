@@ -58,6 +58,24 @@ fn render_reports_and_writes_a_picture() {
     assert_eq!(Path::new(&masks).read_dir().expect("masks").count(), 5);
 }
 
+/// From 10,000 km away a scene has the vertices and edges that it has from near, and its world file
+/// is that of every verb.
+#[test]
+fn inspect_sees_what_f32_cannot_hold() {
+    let scene = "gen:field?n=4&lights=2";
+    let origin = ["--origin", "-12345678.9,0,4567890.1"];
+    let near = json(0, &["inspect", scene]);
+    let far = json(0, &[&["inspect", scene][..], &origin].concat());
+    for counted in ["welded_vertices", "unique_edges", "degenerate_triangles"] {
+        assert_eq!(far[counted], near[counted], "{counted}");
+    }
+    let folder = Folder::new("far");
+    let file = folder.path("far.world");
+    let world = ["--world", &file];
+    json(0, &[&["inspect", scene][..], &origin, &world].concat());
+    json(0, &[&["volumes", scene][..], &origin, &world].concat());
+}
+
 #[test]
 fn inspect_counts() {
     let report = json(0, &["inspect", "gen:field?n=4&lights=2"]);

@@ -30,8 +30,8 @@ impl Fingerprint {
 }
 
 impl Mesh {
-    /// A fingerprint of everything in it: positions and residuals bit by bit, triangles, casting rules. Costs
-    /// about a millisecond for 10 MB.
+    /// A fingerprint of everything in it: positions and residuals bit by bit, triangles, casting
+    /// rules. Costs about a millisecond for 10 MB.
     pub fn fingerprint(&self) -> Fingerprint {
         let parts = [
             checksum(bytemuck::cast_slice(&self.positions)),

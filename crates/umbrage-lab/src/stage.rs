@@ -157,30 +157,16 @@ impl Stage {
         scene.follow(&posed);
         let mut soup = scene.soup_posed(&posed, origin)?;
         drop_blended(&scene, &mut soup);
-        let mut mesh = Mesh {
-            positions: soup.positions.clone(),
-            residuals: soup.residuals.clone(),
-            triangles: soup.triangles.clone(),
-            casting: casting(&scene, &soup, casters),
-        };
+        let mut mesh = mesh(&scene, &soup, casters);
         let [vertices, fixed] = fixed_part(&scene, &soup);
-        let mut never_moves = first(&mesh, vertices, fixed);
-        if weld_m != 0.0 {
-            let mut welded = never_moves.into_owned();
-            if let Err(error) = welded.weld_within(weld_m) {
-                return Err(StageError::new(&scene, None, error.into()));
-            }
-            for (all, ours) in [
-                (&mut soup.positions, &welded.positions),
-                (&mut soup.residuals, &welded.residuals),
-                (&mut mesh.positions, &welded.positions),
-                (&mut mesh.residuals, &welded.residuals),
-            ] {
-                all[..ours.len()].copy_from_slice(ours);
-            }
-            never_moves = Cow::Owned(welded);
+        if let Err(error) = mesh.weld_first_within(vertices, weld_m) {
+            return Err(StageError::new(&scene, None, error.into()));
         }
-        let mut world = match open_or_build(&never_moves, world_file) {
+        if weld_m != 0.0 {
+            soup.positions.clone_from(&mesh.positions);
+            soup.residuals.clone_from(&mesh.residuals);
+        }
+        let mut world = match open_or_build(&first(&mesh, vertices, fixed), world_file) {
             Ok(found) => found.world,
             Err(error) => return Err(StageError::new(&scene, world_file, error)),
         };
@@ -255,8 +241,18 @@ impl Stage {
     }
 }
 
+/// The triangles of a flattened scene as the library and the oracle take them.
+pub fn mesh(scene: &Scene, soup: &Soup, casters: Casters) -> Mesh {
+    Mesh {
+        positions: soup.positions.clone(),
+        residuals: soup.residuals.clone(),
+        triangles: soup.triangles.clone(),
+        casting: casting(scene, soup, casters),
+    }
+}
+
 /// One rule a triangle of the soup.
-pub fn casting(scene: &Scene, soup: &Soup, casters: Casters) -> Vec<Casting> {
+fn casting(scene: &Scene, soup: &Soup, casters: Casters) -> Vec<Casting> {
     let rule = |&material: &u32| match casters {
         Casters::Material if scene.materials[material as usize].double_sided => Casting::Both,
         Casters::Material | Casters::Front => Casting::Front,

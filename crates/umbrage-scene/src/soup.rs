@@ -140,6 +140,12 @@ fn split(p: DVec3) -> [Vec3; 2] {
     [position, (p - position.as_dvec3()).as_vec3()]
 }
 
+/// The place that is kept as position and residual `v`.
+fn place([positions, residuals]: [&[Vec3]; 2], v: u32) -> DVec3 {
+    let residual = residuals.get(v as usize).copied().unwrap_or_default();
+    positions[v as usize].as_dvec3() + residual.as_dvec3()
+}
+
 impl Soup {
     /// Bytes of one triangle, with or without normals and texture coordinates.
     pub(crate) fn triangle_bytes(shaded: bool, textured: bool) -> usize {
@@ -150,8 +156,7 @@ impl Soup {
 
     /// Where vertex `v` stands relative to the origin.
     pub fn place(&self, v: u32) -> DVec3 {
-        let residual = self.residuals.get(v as usize).copied();
-        self.positions[v as usize].as_dvec3() + residual.unwrap_or(Vec3::ZERO).as_dvec3()
+        place([&self.positions, &self.residuals], v)
     }
 
     /// Moves instances of `scene` to where `posed` puts them: their positions and normals. Each comes
@@ -263,7 +268,7 @@ fn append(soup: &mut Soup, part: &Part<'_>, [shaded, textured]: [bool; 2]) {
 /// where it has none.
 fn shade<'t>(
     part: &Part<'_>,
-    [positions, residuals]: [&[Vec3]; 2],
+    kept: [&[Vec3]; 2],
     triangles: impl Iterator<Item = (&'t [u32; 3], &'t mut [Vec3; 3])>,
 ) {
     let turned = |linear: DMat3| cofactors(linear) * if part.mirrored { -1.0 } else { 1.0 };
@@ -273,10 +278,7 @@ fn shade<'t>(
     };
     let mesh = part.mesh;
     for (corners, normals) in triangles {
-        let [p, q, r] = corners.map(|v| {
-            let residual = residuals.get(v as usize).copied();
-            positions[v as usize].as_dvec3() + residual.unwrap_or(Vec3::ZERO).as_dvec3()
-        });
+        let [p, q, r] = corners.map(|v| place(kept, v));
         let face = (q - p).cross(r - p).try_normalize().unwrap_or(DVec3::Y);
         *normals = corners.map(|v| {
             let v = (v - part.base) as usize;

@@ -521,7 +521,8 @@ fn shader_distance(light: &LightPlan) -> f32 {
 /// Quads, caps, lights, distances.
 fn bind_group_layout(device: &Device) -> BindGroupLayout {
     let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    buffers_layout(device, "umbrage volume", ShaderStages::VERTEX, [storage; 4])
+    let types = [(storage, ShaderStages::VERTEX); 4];
+    buffers_layout(device, "umbrage volume", types)
 }
 
 /// View, spans.
@@ -529,18 +530,18 @@ fn light_layout(device: &Device) -> BindGroupLayout {
     let stages = ShaderStages::VERTEX | ShaderStages::COMPUTE;
     let storage = wgpu::BufferBindingType::Storage { read_only: true };
     let types = [wgpu::BufferBindingType::Uniform, storage];
-    buffers_layout(device, "umbrage light", stages, types)
+    buffers_layout(device, "umbrage light", types.map(|ty| (ty, stages)))
 }
 
-fn buffers_layout<const N: usize>(
+/// Of buffers, each with the stages that read it, from binding 0 on.
+pub(crate) fn buffers_layout(
     device: &Device,
     label: &str,
-    visibility: ShaderStages,
-    types: [wgpu::BufferBindingType; N],
+    types: impl IntoIterator<Item = (wgpu::BufferBindingType, ShaderStages)>,
 ) -> BindGroupLayout {
     let entries: Vec<_> = (0..)
         .zip(types)
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+        .map(|(binding, (ty, visibility))| wgpu::BindGroupLayoutEntry {
             binding,
             visibility,
             ty: wgpu::BindingType::Buffer {

@@ -8,6 +8,7 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, ShaderStages};
 
 use crate::RenderError;
 use crate::buffers::Written;
+use crate::renderer::buffers_layout;
 use crate::split::Split;
 use crate::windows::{Windows, WorldWindows};
 
@@ -211,23 +212,7 @@ fn layout(device: &Device, windows: &WorldWindows) -> BindGroupLayout {
     ] {
         types.extend((0..array.count).map(|_| (storage, stages)));
     }
-    let entries: Vec<_> = (0..)
-        .zip(types)
-        .map(|(binding, (ty, visibility))| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility,
-            ty: wgpu::BindingType::Buffer {
-                ty,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        })
-        .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("umbrage world"),
-        entries: &entries,
-    })
+    buffers_layout(device, "umbrage world", types)
 }
 
 fn in_bytes(ranges: &[Range<u32>], item: usize) -> impl Iterator<Item = Range<usize>> {

@@ -3,11 +3,9 @@
 
 use std::time::Instant;
 
-use umbrage_core::Mesh;
 use umbrage_core::volume::Crow;
-use umbrage_core::world::WorldError;
 use umbrage_lab::saved_world::{WorldFromFile, open_or_build};
-use umbrage_lab::stage::{StageError, casting, fixed_part};
+use umbrage_lab::stage::{self, StageError, fixed_part};
 use umbrage_scene::Progress;
 
 use crate::actor;
@@ -33,13 +31,8 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     bar.stage(world_step(world_file), 0);
     let [fixed, _] = fixed_part(&scene, &soup);
     // Every triangle counts here, whatever it casts.
-    let mut mesh = Mesh {
-        casting: casting(&scene, &soup, options.casters.into()),
-        positions: soup.positions,
-        triangles: soup.triangles,
-        ..Mesh::default()
-    };
-    weld_first(&mut mesh, fixed, options.weld)
+    let mut mesh = stage::mesh(&scene, &soup, options.casters.into());
+    mesh.weld_first_within(fixed, options.weld)
         .map_err(|error| StageError::new(&scene, None, error.into()))?;
     let WorldFromFile { world, opened_in } = open_or_build(&mesh, world_file)
         .map_err(|error| StageError::new(&scene, world_file, error))?;
@@ -85,17 +78,6 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         },
     };
     args.results.show(&table(&report), &report)
-}
-
-/// Welds the first `count` positions by tolerance, as other verbs weld what never moves.
-fn weld_first(mesh: &mut Mesh, count: usize, tolerance_m: f32) -> Result<(), WorldError> {
-    let mut fixed = Mesh {
-        positions: mesh.positions[..count].to_vec(),
-        ..Mesh::default()
-    };
-    fixed.weld_within(tolerance_m)?;
-    mesh.positions[..count].copy_from_slice(&fixed.positions);
-    Ok(())
 }
 
 fn table(report: &InspectReport) -> Table {

@@ -15,6 +15,7 @@ use glam::DVec3;
 
 use super::{WorldError, weld};
 use crate::mesh::Mesh;
+use crate::place::Places;
 
 #[cfg(doc)]
 use super::World;
@@ -29,13 +30,35 @@ impl Mesh {
     /// # Errors
     /// [`WorldError::Tolerance`].
     pub fn weld_within(&mut self, tolerance_m: f32) -> Result<usize, WorldError> {
+        self.weld_first_within(self.positions.len(), tolerance_m)
+    }
+
+    /// [`Mesh::weld_within`] among the first `count` vertices: of a mesh in which others move.
+    ///
+    /// # Errors
+    /// As [`Mesh::weld_within`].
+    ///
+    /// # Panics
+    /// If there are fewer vertices.
+    pub fn weld_first_within(
+        &mut self,
+        count: usize,
+        tolerance_m: f32,
+    ) -> Result<usize, WorldError> {
         if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
             return Err(WorldError::Tolerance { tolerance_m });
         }
         if tolerance_m == 0.0 {
             return Ok(0);
         }
-        let (first, _) = weld::weld(self.places());
+        let Places {
+            positions,
+            residuals,
+        } = self.places();
+        let (first, _) = weld::weld(Places {
+            positions: &positions[..count],
+            residuals: residuals.get(..count).unwrap_or_default(),
+        });
         let mut grid = Grid::new(f64::from(tolerance_m));
         let mut moved = 0;
         for (i, &first) in first.iter().enumerate() {

@@ -38,10 +38,6 @@ fn surface_offset(pixel: vec2f, distance: f32) -> vec3f {
         + view.up * (ndc.y / view.scale_y));
 }
 
-fn from_eye(light: Light) -> vec3f {
-    return (light.position - view.eye) + (light.residual - view.eye_residual);
-}
-
 // KHR_lights_punctual: inverse square with a window that reaches zero at the range.
 fn attenuation(d2: f32, range: f32) -> f32 {
     let ratio2 = d2 / (range * range);
@@ -53,7 +49,7 @@ fn arriving(light: Light, q: vec3f) -> vec4f {
     if light.kind == 2u {
         return vec4f(-light.direction, 1.0);
     }
-    let v = from_eye(light) - q;
+    let v = umbrage_minus_eye(view, light.position, light.residual) - q;
     let d2 = dot(v, v);
     let to_light = v * inverseSqrt(max(d2, 1e-12));
     var strength = attenuation(d2, light.range);
@@ -117,7 +113,8 @@ fn ambient(in: Varying) -> @location(0) vec4f {
 // Whether the light reaches the surface at a pixel, with `slack` on its range and its cone.
 fn is_reached(light: Light, pixel: vec2f, slack: f32) -> bool {
     let distance = textureLoad(distance_texture, vec2i(pixel), 0).x;
-    let v = from_eye(light) - surface_offset(pixel, distance);
+    let v = umbrage_minus_eye(view, light.position, light.residual)
+        - surface_offset(pixel, distance);
     let range = light.range * (1.0 + slack);
     let in_cone = dot(light.direction, -v) >= (light.cos_outer - slack) * length(v);
     let in_reach = dot(v, v) < range * range && (light.kind != 1u || in_cone);

@@ -91,7 +91,7 @@ fn trace(
     let b = corners[3u * own + 1u].xyz;
     let c = corners[3u * own + 2u].xyz;
     let normal = cross(b - a, c - a);
-    let height = dot(normal, (a - view.eye) - view.eye_residual);
+    let height = dot(normal, umbrage_minus_eye(view, a, vec3f(0.0)));
     let ndc = vec2f(2.0, -2.0) * (vec2f(pixel.xy) + 0.5) / vec2f(size) + vec2f(-1.0, 1.0);
     let ahead = view.forward + view.right * (ndc.x / view.scale_x) + view.up * (ndc.y / view.scale_y);
     // From the eye to the surface, no farther and no nearer than the triangle is.
@@ -130,7 +130,7 @@ fn is_in_tile(number: u32, tile: vec2u) -> bool {
 
 // `height` is how far the eye is behind the surface's plane, times the length of `normal`.
 fn is_lit(light: Light, q: vec3f, own: u32, normal: vec3f, height: f32) -> bool {
-    let to_light = (light.position - view.eye) + (light.residual - view.eye_residual);
+    let to_light = umbrage_minus_eye(view, light.position, light.residual);
     let v = q - to_light;
     var facing = -dot(normal, light.direction);
     var ray: Ray;

@@ -15,6 +15,12 @@ struct View {
     eye_residual: vec3f,
 }
 
+// From the eye to a place that is kept as what f32 rounds it to and what that leaves: where they are
+// near each other, nothing is lost.
+fn umbrage_minus_eye(view: View, rounded: vec3f, residual: vec3f) -> vec3f {
+    return (rounded - view.eye) + (residual - view.eye_residual);
+}
+
 // Clip position of a world point (w = 1) at q = point - eye, or of the point at infinity (w = 0)
 // in direction q. Reversed, infinite depth: near / distance.
 fn umbrage_clip(view: View, q: vec3f, w: f32) -> vec4f {

@@ -30,7 +30,7 @@ fn umbrage_between(start: u32, end: u32) -> vec3f {
 // From the eye to a vertex.
 fn umbrage_from_eye(vertex: u32) -> vec3f {
     let p = umbrage_place(vertex);
-    return (p.rounded - umbrage_world_view.eye) + (p.residual - umbrage_world_view.eye_residual);
+    return umbrage_minus_eye(umbrage_world_view, p.rounded, p.residual);
 }
 
 // From a light to a vertex.
@@ -42,6 +42,5 @@ fn umbrage_from_light(vertex: u32, light: UmbrageLight) -> vec3f {
 
 // From the eye to a light that has a position.
 fn umbrage_light_from_eye(light: UmbrageLight) -> vec3f {
-    return (light.rounded.xyz - umbrage_world_view.eye)
-        + (light.residual.xyz - umbrage_world_view.eye_residual);
+    return umbrage_minus_eye(umbrage_world_view, light.rounded.xyz, light.residual.xyz);
 }
