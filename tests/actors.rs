@@ -5,7 +5,9 @@ mod common;
 
 use std::path::Path;
 
-use common::{Random, Site, by_profile, judged, lab, plain, point, skipped, staged};
+use common::{
+    Random, Site, WALK, by_profile, data, judged, lab, plain, point, skipped, staged, walk,
+};
 use glam::{DAffine3, DVec3, Vec3, dvec3};
 use umbrage_core::volume::{VolumeBuilder, Volumes};
 use umbrage_core::world::{Reach, World};
@@ -15,34 +17,14 @@ use umbrage_lab::lab::Lab;
 use umbrage_lab::method::Method;
 use umbrage_lab::stage::{Casters, Stage, StageLight};
 use umbrage_scene::Scene;
-use umbrage_scene::rig::Placement;
 use umbrage_truth::{Judgement, Mask, Oracle};
 
 const SIZE: [u32; 2] = [200, 112];
 
-fn data(file: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data")
-        .join(file);
-    umbrage_scene::load(&path, &()).unwrap_or_else(|error| panic!("{error}"))
-}
-
 /// Stormkeep's lower hall, with a man who is about to walk across it.
 fn hall() -> (Site, View) {
-    let mut scene = data("worlds/stormkeep.glb");
-    let placement = Placement {
-        at: dvec3(-970.0, -40.0, -1312.0),
-        turn_rad: std::f64::consts::FRAC_PI_2,
-        scale: 40.0,
-        speed: 40.0,
-    };
-    scene.place(data("actors/cesium_man.glb"), &placement);
-    let site = Site::new(scene, Casters::Material);
-    let (eye, target) = (
-        Vec3::new(-840.0, 10.0, -1440.0),
-        Vec3::new(-950.0, -12.0, -1312.0),
-    );
-    let view = site.look(eye, target, SIZE);
+    let site = Site::new(walk(), Casters::Material);
+    let view = site.look(WALK[0], WALK[1], SIZE);
     (site, view)
 }
 

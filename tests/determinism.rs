@@ -3,15 +3,14 @@
 
 mod common;
 
-use common::{EXACT, Site, by_profile, check, lab, plain};
-use glam::{DVec3, Vec3, dvec3};
+use common::{EXACT, Site, WALK, by_profile, check, lab, plain, walk};
+use glam::{DVec3, Vec3};
 use umbrage_core::frame::{FramePlan, LightPlan, PathRule, PlanOptions};
 use umbrage_core::volume::{Chain, ChainTriangle, LayerLimit, Part, Quad, VolumeBuilder, Volumes};
 use umbrage_core::world::{BuildTimes, Pose, World};
 use umbrage_core::{Light, View};
 use umbrage_lab::lab::Method;
 use umbrage_lab::stage::Casters;
-use umbrage_scene::rig::Placement;
 use umbrage_truth::Mask;
 
 fn city() -> Site {
@@ -257,28 +256,13 @@ fn threads_change_no_mask() {
 /// A man who walks through stormkeep is posed, built and drawn alike.
 #[test]
 fn threads_change_no_step_of_an_actor() {
-    let data = |file: &str| {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("data")
-            .join(file);
-        umbrage_scene::load(&path, &()).unwrap_or_else(|error| panic!("{error}"))
-    };
     let walked = |threads: usize| {
         let site = with_threads(threads, || {
-            let mut scene = data("worlds/stormkeep.glb");
-            let placement = Placement {
-                at: dvec3(-970.0, -40.0, -1312.0),
-                turn_rad: std::f64::consts::FRAC_PI_2,
-                scale: 40.0,
-                speed: 40.0,
-            };
-            scene.place(data("actors/cesium_man.glb"), &placement);
-            let mut site = Site::new(scene, Casters::Material);
+            let mut site = Site::new(walk(), Casters::Material);
             site.stage.set_time(0.62).expect("he can walk");
             site
         });
-        let [eye, target] = [[-840.0, 10.0, -1440.0], [-950.0, -12.0, -1312.0]].map(Vec3::from);
-        let view = site.look(eye, target, by_profile([160, 90], [80, 45]));
+        let view = site.look(WALK[0], WALK[1], by_profile([160, 90], [80, 45]));
         masks(&site, &view, threads)
     };
     let [first, others @ ..] = [1, 3].map(walked);

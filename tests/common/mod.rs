@@ -14,6 +14,7 @@ use umbrage_core::{Light, LightShape, View};
 use umbrage_lab::gpu::{AdapterChoice, Gpu};
 use umbrage_lab::lab::{Lab, Method};
 use umbrage_lab::stage::{Casters, Stage, StageLight};
+use umbrage_scene::rig::Placement;
 use umbrage_scene::{Instance, Material, Scene};
 use umbrage_truth::{JudgeOptions, Judgement, Mask, Oracle, judge};
 
@@ -247,6 +248,33 @@ pub(crate) fn glb_files(folder: &Path) -> Vec<PathBuf> {
     files.sort();
     files
 }
+
+/// A bundled file.
+pub(crate) fn data(file: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("data")
+        .join(file);
+    umbrage_scene::load(&path, &()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Stormkeep, with a man who is about to walk across its lower hall.
+pub(crate) fn walk() -> Scene {
+    let mut scene = data("worlds/stormkeep.glb");
+    let placement = Placement {
+        at: DVec3::new(-970.0, -40.0, -1312.0),
+        turn_rad: std::f64::consts::FRAC_PI_2,
+        scale: 40.0,
+        speed: 40.0,
+    };
+    scene.place(data("actors/cesium_man.glb"), &placement);
+    scene
+}
+
+/// From where he is seen, and where to look.
+pub(crate) const WALK: [Vec3; 2] = [
+    Vec3::new(-840.0, 10.0, -1440.0),
+    Vec3::new(-950.0, -12.0, -1312.0),
+];
 
 /// The lights as shadow system and oracle see them.
 pub(crate) fn plain(lights: &[StageLight]) -> Vec<Light> {
