@@ -5,8 +5,8 @@ mod common;
 use common::{Random, build, point_light, strewn_soup, sun};
 use glam::{DVec3, Vec3};
 use umbrage_core::frame::{FramePlan, PlanOptions};
-use umbrage_core::world::{LightPoint, Planes, Reach, World, WorldError};
-use umbrage_core::{Light, Mesh, View};
+use umbrage_core::world::{Layer, LightPoint, Planes, Reach, Subset, World, WorldError, query};
+use umbrage_core::{Light, LightShape, Mesh, View};
 
 /// A multiple of what the soup below is rounded to, so that adding it is exact in 48 bits.
 const FAR: DVec3 = DVec3::new(8_388_608.0, -4_194_304.0, 2_097_152.0);
@@ -129,6 +129,46 @@ fn a_query_loses_nothing_far_away() {
             }
         }
     }
+}
+
+/// Found by the stress campaign: where a world of centimetres is far away the middle of a box is no
+/// f32, and cones lost what was in it.
+#[test]
+fn a_cone_loses_nothing_far_away() {
+    let [near, mut mesh] = near_and_far(5);
+    let cos_outer = 0.7;
+    let (mut subset, mut reached) = (Subset::default(), 0);
+    let (mut r, lights) = (Random(11), lights(5, DVec3::ZERO));
+    for _ in 0..30 {
+        let by = 5e6 * r.point().as_dvec3();
+        mesh.stand(near.positions.iter().map(|p| p.as_dvec3() / 64.0 + by));
+        let world = World::build(&mesh).unwrap();
+        for light in &lights[1..] {
+            let direction = r.point().normalize();
+            let spot = Light {
+                position: light.position / 64.0 + by,
+                range: 1.5 / 64.0,
+                shape: LightShape::Spot {
+                    direction,
+                    cos_outer,
+                },
+            };
+            query(&world, Layer::Fixed, &spot, &mut subset);
+            let found: Vec<u32> = subset.triangles().collect();
+            let in_cone = |p: &DVec3| {
+                let v = p - spot.position;
+                v.length() <= f64::from(spot.range)
+                    && v.dot(direction.as_dvec3()) >= f64::from(cos_outer) * v.length()
+            };
+            for t in 0..world.triangles.len() as u32 {
+                if world.corners(t).iter().any(in_cone) {
+                    assert!(found.binary_search(&t).is_ok(), "{spot:?} lost {t}");
+                    reached += 1;
+                }
+            }
+        }
+    }
+    assert!(reached > 50, "{reached}");
 }
 
 /// Positions that are one in f32 and two in f64 stay two.

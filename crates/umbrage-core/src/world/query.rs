@@ -101,7 +101,8 @@ impl Reach {
     fn cone_meets(&self, min: Vec3, max: Vec3) -> bool {
         self.cone.is_none_or(|cone| {
             let half = (max - min) * 0.5;
-            cone.meets_sphere(self.center, min + half, half.length() + 2.0 * self.slack)
+            // Subtracted first: far from zero the middle of a small box is no f32.
+            cone.meets_sphere((min - self.center) + half, half.length() + 2.0 * self.slack)
         })
     }
 
@@ -134,10 +135,9 @@ impl Reach {
 }
 
 impl Cone {
-    /// Whether the sphere may meet the cone: the distance from the sphere's centre to the cone's
-    /// surface, with slack for rounding.
-    fn meets_sphere(&self, apex: Vec3, center: Vec3, radius: f32) -> bool {
-        let v = center - apex;
+    /// Whether the sphere around `v` from the apex may meet the cone: the distance from its centre
+    /// to the cone's surface, with slack for rounding.
+    fn meets_sphere(&self, v: Vec3, radius: f32) -> bool {
         let length = v.length();
         let along = v.dot(self.axis);
         let aside = (v - along * self.axis).length();
