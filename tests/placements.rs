@@ -11,7 +11,6 @@ use umbrage_core::volume::{VolumeBuilder, Volumes};
 use umbrage_core::{Light, LightShape, View};
 use umbrage_lab::lab::Method;
 use umbrage_lab::stage::Casters;
-use umbrage_truth::{EyeRays, Mask};
 
 const SIZE: [u32; 2] = if cfg!(debug_assertions) {
     [96, 72]
@@ -329,7 +328,10 @@ fn near_plane_through_volumes() {
                 };
                 for method in EXACT {
                     let found = check(&site, lights, &view, method);
-                    let beyond = beyond_near(&site, &view, &found.mask);
+                    let near_clip = common::lab().near_clip();
+                    let truth = site.oracle.shadow_mask(&view, &plain(lights), near_clip);
+                    let mut beyond = found.mask.clone();
+                    beyond.trust_before_near(&site.oracle, &view, near_clip, &truth);
                     let judgement = common::judged(&site, lights, &view, &beyond, &found.skipped);
                     let what = format!("{name}, seed {seed}, near {near}, {}", method.name());
                     assert_exact(&what, &Found { judgement, ..found });
@@ -337,28 +339,6 @@ fn near_plane_through_volumes() {
             }
         }
     }
-}
-
-/// The mask, with the oracle's own verdicts where the surface is not beyond the near plane.
-fn beyond_near(site: &Site, view: &View, mask: &Mask) -> Mask {
-    let near_clip = common::lab().near_clip();
-    let rays = EyeRays::new(view, near_clip);
-    let truth = site
-        .oracle
-        .shadow_mask(view, &plain(&site.lights), near_clip);
-    let mut beyond = mask.clone();
-    let near = f64::from(view.near) * (1.0 + 1e-6);
-    for (x, y) in (0..view.size[1]).flat_map(|y| (0..view.size[0]).map(move |x| (x, y))) {
-        let hit = site
-            .oracle
-            .first_hit(&rays, f64::from(x) + 0.5, f64::from(y) + 0.5);
-        if hit.is_some_and(|hit| hit.distance <= near) {
-            for light in 0..mask.lights {
-                beyond.set(x, y, light, truth.get(x, y, light));
-            }
-        }
-    }
-    beyond
 }
 
 #[test]

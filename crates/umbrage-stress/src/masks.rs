@@ -12,7 +12,7 @@ use umbrage_lab::gpu::{AdapterChoice, Gpu, GpuError};
 use umbrage_lab::lab::{Lab, Method};
 use umbrage_lab::run::Run;
 use umbrage_lab::stage::{Casters, Stage, StageError, StageLight};
-use umbrage_truth::{EyeRays, Mask, Oracle, Verdicts};
+use umbrage_truth::{Mask, Oracle, Verdicts};
 
 use crate::case::Case;
 use crate::file;
@@ -127,7 +127,8 @@ impl Studio {
                     .map(|light| matches!(self.lab.path(light), LightPath::Skipped(_)))
                     .collect();
                 if view.near > 1e-4 * case.size() {
-                    excuse_before_near(&oracle, view, &verdicts.mask(), &mut mask, self);
+                    let near = self.lab.near_clip();
+                    mask.trust_before_near(&oracle, view, near, &verdicts.mask());
                 }
                 let found = verdicts.judge(&oracle, &mask, &skipped);
                 report.samples += found.samples;
@@ -191,25 +192,5 @@ fn staged(number: usize, light: Light) -> StageLight {
         light,
         power: glam::Vec3::ONE,
         cos_inner: 1.0,
-    }
-}
-
-/// Says what the oracle says where the surface is not beyond the near plane.
-fn excuse_before_near(
-    oracle: &Oracle,
-    view: &View,
-    truth: &Mask,
-    mask: &mut Mask,
-    studio: &Studio,
-) {
-    let rays = EyeRays::new(view, studio.lab.near_clip());
-    let near = f64::from(view.near) * (1.0 + 1e-6);
-    for (x, y) in (0..view.size[1]).flat_map(|y| (0..view.size[0]).map(move |x| (x, y))) {
-        let hit = oracle.first_hit(&rays, f64::from(x) + 0.5, f64::from(y) + 0.5);
-        if hit.is_some_and(|hit| hit.distance <= near) {
-            for light in 0..mask.lights {
-                mask.set(x, y, light, truth.get(x, y, light));
-            }
-        }
     }
 }

@@ -1,5 +1,10 @@
 //! Shadow masks: what a method said about every pixel and light. One bit each.
 
+use umbrage_core::View;
+
+use crate::oracle::Oracle;
+use crate::rays::{EyeRays, NearClip};
+
 /// Per light and pixel: lit or not.
 ///
 /// Bit `light % 32` of `words[(light / 32) * width * height + y * width + x]` is 1 where the
@@ -52,6 +57,28 @@ impl Mask {
             self.words[index] |= bit;
         } else {
             self.words[index] &= !bit;
+        }
+    }
+
+    /// Takes over `truth` where what is seen stands before the near plane: surfaces there are clamped
+    /// to one depth, and which of them is drawn is open.
+    pub fn trust_before_near(
+        &mut self,
+        oracle: &Oracle,
+        view: &View,
+        clip: NearClip,
+        truth: &Self,
+    ) {
+        let rays = EyeRays::new(view, clip);
+        let near = f64::from(view.near) * (1.0 + 1e-6);
+        let [width, height] = self.size;
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            let hit = oracle.first_hit(&rays, f64::from(x) + 0.5, f64::from(y) + 0.5);
+            if hit.is_some_and(|hit| hit.distance <= near) {
+                for light in 0..self.lights {
+                    self.set(x, y, light, truth.get(x, y, light));
+                }
+            }
         }
     }
 
