@@ -4,7 +4,7 @@ mod attributes;
 
 use std::borrow::Cow;
 
-use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer};
 use wgpu::util::DeviceExt as _;
 use wgpu::{ShaderStages, Texture, TextureFormat, TextureUsages, TextureView};
 

@@ -3,8 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
-use umbrage::{RenderError, check_storage};
 use umbrage_truth::NearClip;
+use umbrage_wgpu::{RenderError, check_storage};
 
 /// Which adapter to use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! Heat maps: what is drawn or counted at each pixel, in false colours.
 
 use half::f16;
-use umbrage::frame::{FramePlan, LightPath};
-use umbrage::{Cull, Culls, View, VolumeColor};
+use umbrage_core::frame::{FramePlan, LightPath};
+use umbrage_core::{Cull, Culls, View};
+use umbrage_wgpu::VolumeColor;
 
 use crate::gbuffer::texture;
 use crate::gpu::GpuError;

@@ -4,14 +4,14 @@ use std::time::Instant;
 
 use glam::Vec3;
 use half::f16;
-use umbrage::frame::bounds::light_rect;
-use umbrage::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
-use umbrage::volume::{LayerLimit, VolumeBuilder, Volumes};
-use umbrage::{
-    Cull, Culls, Frame, Light, LightCalls, RendererOptions, ShadowRenderer, Uploaded, View,
-    VolumeColor, WorldWindows,
-};
+use umbrage_core::frame::bounds::light_rect;
+use umbrage_core::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
+use umbrage_core::volume::{LayerLimit, VolumeBuilder, Volumes};
+use umbrage_core::{Cull, Culls, Light, View};
 use umbrage_truth::{Mask, NearClip};
+use umbrage_wgpu::{
+    Frame, LightCalls, RendererOptions, ShadowRenderer, Uploaded, VolumeColor, WorldWindows,
+};
 
 use crate::application::Application;
 use crate::gbuffer::{GBufferPass, Targets, texture};

@@ -22,4 +22,5 @@ pub mod stage;
 pub mod technique;
 pub mod timer;
 
-pub use umbrage::{Cull, Culls, RenderError, Uploaded, WorldWindows};
+pub use umbrage_core::{Cull, Culls};
+pub use umbrage_wgpu::{RenderError, Uploaded, WorldWindows};

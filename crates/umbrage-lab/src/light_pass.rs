@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
-use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer, light_wgsl};
+use umbrage_core::LightShape;
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer, light_wgsl};
 use wgpu::{RenderPipeline, TextureFormat};
 
 use crate::gbuffer::whole;

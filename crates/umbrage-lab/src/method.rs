@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::str::FromStr;
 
 use thiserror::Error;
-use umbrage::frame::{Distance, Extrusion, PathRule};
-use umbrage::volume::Construction;
+use umbrage_core::frame::{Distance, Extrusion, PathRule};
+use umbrage_core::volume::Construction;
 
 use crate::application::{Application, NoMask};
 
@@ -225,7 +225,7 @@ impl Method {
         }
     }
 
-    /// Whether it draws worlds with residuals (see [`umbrage::place`]); else f32 must hold the world.
+    /// Whether it draws worlds with residuals (see [`umbrage_core::place`]); else f32 must hold the world.
     pub fn takes_residuals(self) -> bool {
         !matches!(self, Method::RayTrace | Method::ShadowMap { .. })
     }

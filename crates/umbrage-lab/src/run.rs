@@ -1,7 +1,7 @@
 //! What a frame is drawn with, kept from frame to frame: targets, passes, the shadow renderer, the
 //! technique.
 
-use umbrage::{Frame, LightCalls, ShadowRenderer};
+use umbrage_wgpu::{Frame, LightCalls, ShadowRenderer};
 
 use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
 use crate::gpu::{Gpu, GpuError};

@@ -15,8 +15,9 @@ mod unseen;
 use std::fmt::Debug;
 use std::ops::Range;
 
-use umbrage::frame::FramePlan;
-use umbrage::{Frame, ShadowRenderer, Uploaded, View};
+use umbrage_core::View;
+use umbrage_core::frame::FramePlan;
+use umbrage_wgpu::{Frame, ShadowRenderer, Uploaded};
 
 use crate::application::Application;
 use crate::gbuffer::Targets;

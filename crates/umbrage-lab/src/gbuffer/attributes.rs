@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use umbrage::RenderError;
+use umbrage_wgpu::RenderError;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages};
 
 use crate::binding::bind;

@@ -27,8 +27,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::Vec3;
-use umbrage::{CLIP_WGSL, ShadowRenderer};
 use umbrage_core::world::{Reach, World};
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer};
 
 use super::unseen::Unseen;
 use super::{Given, Technique, TechniqueReport};

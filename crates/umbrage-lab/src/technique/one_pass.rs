@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use umbrage::ShadowRenderer;
+use umbrage_wgpu::ShadowRenderer;
 
 use super::{Given, Technique};
 use crate::gpu::{Gpu, GpuError};

@@ -6,8 +6,9 @@
 
 use std::ops::Range;
 
-use umbrage::{Light, ShadowRenderer, View};
+use umbrage_core::{Light, View};
 use umbrage_truth::{NearClip, Oracle, Verdicts};
+use umbrage_wgpu::ShadowRenderer;
 use wgpu::{BindGroupLayout, ShaderStages, TextureUsages};
 
 use super::{Given, Technique, TechniqueReport};

@@ -16,7 +16,8 @@ mod tree;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
-use umbrage::{CLIP_WGSL, LightShape, ShadowRenderer, light_wgsl};
+use umbrage_core::LightShape;
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer, light_wgsl};
 use wgpu::{BindGroupLayout, BufferUsages, ShaderStages, TextureFormat, TextureUsages};
 
 use self::primary::Primary;

@@ -19,8 +19,9 @@ mod tests;
 
 use std::ops::Range;
 
-use umbrage::{Cull, Light, ShadowRenderer};
 use umbrage_core::world::{Reach, Seen};
+use umbrage_core::{Cull, Light};
+use umbrage_wgpu::ShadowRenderer;
 
 use self::casters::{Casters, casters};
 use self::draw::{Bias, CasterPass, Drawing, write_faces};

@@ -4,7 +4,8 @@
 //! very frame. So they are read back with the next, and count if view, lights and world are the same:
 //! other methods then spare exactly the lights that volumes spare, and no shadow is ever late.
 
-use umbrage::{Light, LightCalls, View};
+use umbrage_core::{Light, View};
+use umbrage_wgpu::LightCalls;
 
 use crate::gpu::{Gpu, GpuError};
 use crate::readback::{read_items, record_copy};

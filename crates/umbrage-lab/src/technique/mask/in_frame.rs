@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use umbrage::ShadowRenderer;
+use umbrage_wgpu::ShadowRenderer;
 
 use super::lighting::Lighting;
 use super::pack::Placed;

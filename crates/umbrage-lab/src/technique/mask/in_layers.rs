@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use umbrage::{ShadowRenderer, Uploaded};
+use umbrage_wgpu::{ShadowRenderer, Uploaded};
 
 use super::lighting::Lighting;
 use super::low::{LowFrame, area, low_size};

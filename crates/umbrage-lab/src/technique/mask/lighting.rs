@@ -1,6 +1,6 @@
 //! The steps that apply masks: the light, and what it adds in its shadow.
 
-use umbrage::ShadowRenderer;
+use umbrage_wgpu::ShadowRenderer;
 
 use super::plan::{MaskPlan, Step};
 use crate::gpu::Gpu;

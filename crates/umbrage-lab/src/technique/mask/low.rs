@@ -5,11 +5,10 @@
 //! leaves a rest, every texel is a little less than `divisor` pixels wide or high, 721/361 for half
 //! of 721. Scissors are a texel wider than a light's own, since filtering looks one texel aside.
 
-use umbrage::frame::bounds::light_rect;
-use umbrage::{
-    Extrusion, Frame, FramePlan, Rect, RendererOptions, ShadowRenderer, Uploaded, View,
-    VolumeColor, WorldWindows,
-};
+use umbrage_core::View;
+use umbrage_core::frame::bounds::light_rect;
+use umbrage_core::frame::{Extrusion, FramePlan, Rect};
+use umbrage_wgpu::{Frame, RendererOptions, ShadowRenderer, Uploaded, VolumeColor, WorldWindows};
 
 use super::low_depth::LowDepth;
 use crate::gbuffer::{DEPTH_STENCIL, depth_only, texture};

@@ -4,7 +4,7 @@
 //! Vertices are those of `primary.wgsl`, by the rules of the surface's own: the same clip positions,
 //! the same triangles left out.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer};
 use wgpu::Texture;
 
 use crate::gbuffer::{DEPTH_STENCIL, whole};

@@ -7,7 +7,8 @@
 
 use std::ops::Range;
 
-use umbrage::{CountStep, FaceOptions, LightPath, ShadowRenderer, VolumeFaces};
+use umbrage_core::frame::LightPath;
+use umbrage_wgpu::{CountStep, FaceOptions, ShadowRenderer, VolumeFaces};
 use wgpu::{CompareFunction, StencilFaceState, StencilOperation};
 
 use crate::gpu::{Gpu, GpuError};

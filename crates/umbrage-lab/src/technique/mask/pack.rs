@@ -8,7 +8,7 @@
 //! a layer and a layer a batch, 1.02 s with four channels a layer, no less with more layers; half
 //! 0.92 s, 0.83 s, and 0.78 s with 32 layers.
 
-use umbrage::Rect;
+use umbrage_core::frame::Rect;
 
 /// Channels of a layer.
 pub(crate) const CHANNELS: u32 = 4;

@@ -2,9 +2,8 @@
 
 use std::borrow::Cow;
 
-use umbrage::{
-    CLIP_WGSL, CountStep, FaceOptions, LightPlan, ShadowRenderer, VolumeFaces, light_wgsl,
-};
+use umbrage_core::frame::LightPlan;
+use umbrage_wgpu::{CLIP_WGSL, CountStep, FaceOptions, ShadowRenderer, VolumeFaces, light_wgsl};
 use wgpu::{BlendComponent, BlendFactor, BlendOperation, RenderPipeline, TextureFormat};
 
 use super::plan::{MaskPlan, Place, Rectangle, Step};

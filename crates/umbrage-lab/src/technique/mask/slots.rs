@@ -2,7 +2,7 @@
 
 use crate::gpu::Gpu;
 use bytemuck::{Pod, Zeroable};
-use umbrage::{FramePlan, LightPath};
+use umbrage_core::frame::{FramePlan, LightPath};
 
 use super::pack::Placed;
 use super::plan::MaskPlan;

@@ -1,7 +1,7 @@
 //! The number of the triangle seen at each pixel: rays start from its plane, which no rounded
 //! distance can leave, and never meet the triangle itself.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer};
 use wgpu::{TextureFormat, TextureUsages};
 
 use crate::gbuffer::{DEPTH_STENCIL, texture, whole};

@@ -6,9 +6,9 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};
-use umbrage::RenderError;
 use umbrage_core::Casting;
 use umbrage_core::world::{Layer, World};
+use umbrage_wgpu::RenderError;
 use wgpu::BufferUsages;
 
 use crate::gpu::{Gpu, GpuError};

@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use umbrage::volume::{Chain, ChainTriangle, facing};
 use umbrage_core::Light;
+use umbrage_core::volume::{Chain, ChainTriangle, facing};
 use umbrage_core::world::{Layer, Subset, World, query};
 
 use super::face::Face;

@@ -1,6 +1,6 @@
 //! A light's casters into the faces of its map.
 
-use umbrage::{CLIP_WGSL, ShadowRenderer};
+use umbrage_wgpu::{CLIP_WGSL, ShadowRenderer};
 
 use super::casters::Casters;
 use super::face::Face;

@@ -9,7 +9,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3, Vec3};
-use umbrage::{Light, LightShape, View};
+use umbrage_core::{Light, LightShape, View};
 
 /// `struct Face` of the shaders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]

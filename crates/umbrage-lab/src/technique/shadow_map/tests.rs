@@ -3,7 +3,7 @@ use crate::gpu::AdapterChoice;
 use crate::lab::{Lab, Method};
 use crate::stage::{Casters, Stage, StageLight};
 use glam::Vec3;
-use umbrage::{LightShape, View};
+use umbrage_core::{LightShape, View};
 use umbrage_truth::Mask;
 
 const TEXELS: u32 = 256;
