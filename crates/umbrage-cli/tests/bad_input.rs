@@ -160,3 +160,32 @@ fn a_full_disk_leaves_nothing() {
     }
     assert!(folder.files().is_empty(), "half a file was left behind");
 }
+
+/// A limit on address space stands for a device whose memory is full: how much a driver takes for
+/// itself differs, so some of these limits leave none for the driver, and one leaves too little for
+/// the picture.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_without_memory_is_said() {
+    let folder = Folder::new("memory");
+    let picture = folder.path("large.png");
+    let mut said = 0;
+    for kilobytes in (1_000_000..=3_000_000).step_by(500_000) {
+        let output = std::process::Command::new("sh")
+            .args(["-c", &format!("ulimit -v {kilobytes}; exec \"$0\" \"$@\"")])
+            .arg(env!("CARGO_BIN_EXE_umbrage"))
+            .args(["render", "gen:city?triangles=500&lights=1", "-o", &picture])
+            .args(["--size", "8192x8192", "--repeat", "1", "--adapter", "cpu"])
+            .output()
+            .expect("a shell");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(!message.contains("panicked"), "{kilobytes} kB: {message}");
+        if message.contains("ran out of memory") {
+            assert_eq!(output.status.code(), Some(2), "{message}");
+            assert!(message.contains("--size"), "no remedy: {message}");
+            said += 1;
+        }
+    }
+    assert!(said > 0, "no limit was between the driver and the picture");
+    assert!(folder.files().is_empty(), "half a file was left behind");
+}

@@ -1,6 +1,6 @@
 //! Adapter and device: the one place where the lab touches the machine.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use thiserror::Error;
 use umbrage_truth::NearClip;
@@ -60,6 +60,12 @@ pub enum GpuError {
         /// Its size.
         bytes: u64,
     },
+    /// The device ran out of memory somewhere in a frame.
+    #[error(
+        "the GPU ran out of memory ({0}): choose a smaller --size, fewer lights or a smaller \
+         scene, or close what else uses it"
+    )]
+    OutOfMemory(String),
     /// A heat map of volumes for a method that has none.
     #[error("{method} draws no volumes, so there is no such heat map of it; lights works")]
     NoVolumes {
@@ -128,6 +134,8 @@ pub struct Gpu {
     pub depth_clamp: bool,
     /// Why the device was lost, once it was.
     lost: Arc<OnceLock<String>>,
+    /// The first allocation that failed since that was last told.
+    exhausted: Arc<Mutex<Option<String>>>,
     /// Nanoseconds per timestamp tick, where there are timestamps.
     pub timestamp_ns: Option<f32>,
 }
@@ -163,22 +171,28 @@ impl Gpu {
         buffer
     }
 
-    /// The error, or that the device was lost if that explains it.
+    /// The error, or that the device was lost or out of memory if that explains it.
     pub(crate) fn lost_or(&self, error: GpuError) -> GpuError {
-        match self.lost.get() {
-            Some(why) => GpuError::DeviceLost(why.clone()),
-            None => error,
-        }
+        self.trouble().unwrap_or(error)
     }
 
-    /// Whether the device is still there.
+    /// Whether the device is still there, and had memory for all that was made since this was last
+    /// asked. What was made without is void: drawing with it does nothing, and is never read.
     pub(crate) fn check_alive(&self) -> Result<(), GpuError> {
         // It is told no earlier. What a poll has to say in words, the reason says too.
         let _ = self.device.poll(wgpu::PollType::Poll);
-        match self.lost.get() {
-            Some(why) => Err(GpuError::DeviceLost(why.clone())),
-            None => Ok(()),
+        self.trouble().map_or(Ok(()), Err)
+    }
+
+    fn trouble(&self) -> Option<GpuError> {
+        if let Some(why) = self.lost.get() {
+            return Some(GpuError::DeviceLost(why.clone()));
         }
+        let mut exhausted = self
+            .exhausted
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        exhausted.take().map(GpuError::OutOfMemory)
     }
 
     /// Whether any buffer of so many bytes can be made.
@@ -203,8 +217,8 @@ impl Gpu {
         }
     }
 
-    /// Finds an adapter and opens a device with the limits the adapter has. Errors that the
-    /// validation layer reports later are fatal: the lab must never cause one.
+    /// Finds an adapter and opens a device with the limits the adapter has. Errors that
+    /// validation reports later are fatal: the lab must never cause one.
     pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {
         Self::open_limited(choice, |_| ())
     }
@@ -216,6 +230,8 @@ impl Gpu {
     ) -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::PRIMARY,
+            // The driver's own validation where it is installed and this is a debug build.
+            flags: wgpu::InstanceFlags::from_build_config(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
@@ -267,6 +283,9 @@ impl Gpu {
             // The first reason is the cause of all that follow.
             let _ = why.set(format!("{reason:?}: {message}"));
         });
+        let exhausted = Arc::new(Mutex::new(None));
+        let note = Arc::clone(&exhausted);
+        device.on_uncaptured_error(Arc::new(move |error| on_error(&note, &error)));
         let timestamp_ns = features
             .contains(wgpu::Features::TIMESTAMP_QUERY)
             .then(|| queue.get_timestamp_period());
@@ -278,8 +297,25 @@ impl Gpu {
                 .trim()
                 .to_owned(),
             lost,
+            exhausted,
             device,
             queue,
         })
+    }
+}
+
+/// Notes that memory ran out. What else is reported after that, and before it was told, comes of
+/// it: of resources that could not be made. Without that as a reason it is a fault of ours.
+fn on_error(exhausted: &Mutex<Option<String>>, error: &wgpu::Error) {
+    let mut exhausted = exhausted.lock().unwrap_or_else(PoisonError::into_inner);
+    match error {
+        wgpu::Error::OutOfMemory { source } if exhausted.is_none() => {
+            *exhausted = Some(source.to_string().trim().to_owned());
+        }
+        _ if exhausted.is_some() => (),
+        _ => {
+            drop(exhausted);
+            panic!("{error}");
+        }
     }
 }
