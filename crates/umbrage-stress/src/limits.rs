@@ -30,9 +30,9 @@ pub enum Limit {
 const BESIDE_EDGE: f64 = 1e-3;
 /// Volume spanned by the directions to the three corners of a face.
 const BESIDE_FACE: f64 = 1e-3;
-/// Between the eye and a triangle's plane, of the distance to the farthest corner: twice what the
-/// shaders leave out.
-const ON_TRIANGLE: f64 = 1.0 / (1u64 << 21) as f64;
+/// Between the eye and a triangle's plane, of the distance to the farthest corner: the 2^-22 within
+/// which the shaders leave it out, and the 2^-21 within which f32 tells them that height, rounded up.
+const ON_TRIANGLE: f64 = 1.0 / (1u64 << 20) as f64;
 /// Between the light and a caster's plane, of the distance to the farthest corner.
 const IN_PLANE: f64 = 1.0 / (1u64 << 24) as f64;
 /// Between eye and light, of the mesh's size.
@@ -83,7 +83,7 @@ impl Limit {
                  method"
             }
             Limit::EyeOnTriangle => {
-                "the eye is on a triangle but for 2^-21 of the distance to its farthest corner: \
+                "the eye is on a triangle but for 2^-20 of the distance to its farthest corner: \
                  depth pass and volumes take it for one seen edge-on (umbrage_eye_in_plane) and \
                  leave it out, where the oracle sees it fill the picture; drawn by neither method"
             }

@@ -86,7 +86,7 @@ impl ShadowRenderer {
         light: &LightPlan,
     ) {
         let sides = [&faces.zpass_sides, &faces.zfail_sides];
-        let caps = [&faces.zfail_caps, &faces.zfail_reversed_caps];
+        let caps = [&faces.zfail_caps, &faces.zfail_reversed_caps].map(std::slice::from_ref);
         self.draw_volume(pass, number, light, sides, caps);
     }
 }

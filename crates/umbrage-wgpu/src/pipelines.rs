@@ -27,8 +27,9 @@ pub(crate) struct Pipelines {
 pub(crate) struct Counters {
     zpass_sides: RenderPipeline,
     zfail_sides: RenderPipeline,
-    zfail_caps: RenderPipeline,
-    zfail_reversed_caps: RenderPipeline,
+    /// Each with that of caps seen edge-on.
+    zfail_caps: [RenderPipeline; 2],
+    zfail_reversed_caps: [RenderPipeline; 2],
 }
 
 impl Counters {
@@ -38,7 +39,7 @@ impl Counters {
     }
 
     /// Of caps taken as wound, and reversed.
-    pub(crate) fn caps(&self) -> [&RenderPipeline; 2] {
+    pub(crate) fn caps(&self) -> [&[RenderPipeline]; 2] {
         [&self.zfail_caps, &self.zfail_reversed_caps]
     }
 }
@@ -47,6 +48,9 @@ impl Counters {
 pub(crate) const PART_BITS: u32 = 0x7f;
 /// The bit that remembers shadows of parts.
 pub(crate) const SHADOW_BIT: u32 = 0x80;
+
+/// Vertex shader of caps that are seen as a line: their fragments are at one depth.
+const EDGE_ON_CAP: &str = "edge_on_cap";
 
 /// What all pipelines of volumes are made from.
 #[derive(Debug)]
@@ -105,11 +109,14 @@ impl Pipelines {
                 device, options, &layout, &module, label, entry, counts, bits,
             )
         };
+        let caps = |counts, bits| {
+            ["cap", EDGE_ON_CAP].map(|entry| build("umbrage z-fail caps", entry, counts, bits))
+        };
         let counters = |bits| Counters {
             zpass_sides: build("umbrage z-pass sides", "side", Counts::InFront, bits),
             zfail_sides: build("umbrage z-fail sides", "zfail_side", Counts::Behind, bits),
-            zfail_caps: build("umbrage z-fail caps", "cap", Counts::Behind, bits),
-            zfail_reversed_caps: build("umbrage z-fail caps", "cap", Counts::BehindReversed, bits),
+            zfail_caps: caps(Counts::Behind, bits),
+            zfail_reversed_caps: caps(Counts::BehindReversed, bits),
         };
         Self {
             whole: counters(0xff),
@@ -163,8 +170,10 @@ fn pipeline(
         Counts::Join => PART_BITS,
         _ => 0xff,
     };
+    let is_edge_on = vertex_entry == EDGE_ON_CAP;
     let volume_color = match counts {
         Counts::Clean | Counts::Join => VolumeColor::None,
+        _ if is_edge_on => VolumeColor::None,
         _ => options.volume_color,
     };
     // The pass has the host's colour targets; volumes leave them alone, but for debug views.
@@ -174,6 +183,7 @@ fn pipeline(
         operation: wgpu::BlendOperation::Add,
     };
     let (entry_point, visible) = match volume_color {
+        VolumeColor::None if is_edge_on => ("edge_on_depth", None),
         VolumeColor::None => ("nothing", None),
         VolumeColor::Fragments => (
             "one",
@@ -237,7 +247,7 @@ fn pipeline(
             count: options.sample_count,
             ..wgpu::MultisampleState::default()
         },
-        fragment: (!targets.is_empty()).then(|| wgpu::FragmentState {
+        fragment: (is_edge_on || !targets.is_empty()).then(|| wgpu::FragmentState {
             module,
             entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions::default(),

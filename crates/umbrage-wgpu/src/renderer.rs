@@ -348,15 +348,15 @@ impl ShadowRenderer {
     }
 
     /// Draws a light's quads and caps over the scissor that is set, those of all its parts alike,
-    /// with `sides` for z-pass and for z-fail, and `caps` for triangles taken as wound and for those
-    /// taken reversed; false if it has none.
+    /// with `sides` for z-pass and for z-fail, and all of `caps` for triangles taken as wound and for
+    /// those taken reversed; false if it has none.
     pub(crate) fn draw_volume(
         &self,
         pass: &mut RenderPass<'_>,
         number: usize,
         light: &LightPlan,
         sides: [&wgpu::RenderPipeline; 2],
-        caps: [&wgpu::RenderPipeline; 2],
+        caps: [&[wgpu::RenderPipeline]; 2],
     ) -> bool {
         if light.parts.is_empty() {
             let draws = Draws {
@@ -379,7 +379,7 @@ impl ShadowRenderer {
         draws: &Draws<'_>,
         path: LightPath,
         sides: [&wgpu::RenderPipeline; 2],
-        caps: [&wgpu::RenderPipeline; 2],
+        caps: [&[wgpu::RenderPipeline]; 2],
     ) -> bool {
         let (Some(bind_groups), Some(world)) = (&self.bind_groups, &self.world.bind_group) else {
             return false;
@@ -394,8 +394,8 @@ impl ShadowRenderer {
         // Whatever is drawn next has its bind groups set.
         pass.set_bind_group(0, &bind_groups[0], &[]);
         pass.set_bind_group(1, world, &[]);
-        for (range, pipeline, offset) in [
-            (draws.quads, sides, LightCalls::SIDES),
+        for (range, pipelines, offset) in [
+            (draws.quads, std::slice::from_ref(sides), LightCalls::SIDES),
             (draws.caps[0], caps[0], LightCalls::CAPS),
             (draws.caps[1], caps[1], LightCalls::REVERSED_CAPS),
         ] {
@@ -403,20 +403,22 @@ impl ShadowRenderer {
                 continue;
             }
             counted = true;
-            pass.set_pipeline(pipeline);
             let first = range.start as usize / self.list_window;
             let last = (range.end as usize - 1) / self.list_window;
-            for (window, bind_group) in (first..=last).zip(&bind_groups[first..]) {
-                pass.set_bind_group(0, bind_group, &[]);
-                match &calls {
-                    Some(calls) => {
-                        let at = u64::from(draws.number) * LightCalls::SIZE + offset;
-                        pass.draw_indirect(calls[window], at);
-                    }
-                    None => {
-                        let range = within(range, window, self.list_window);
-                        let instance = draws.number..draws.number + 1;
-                        pass.draw(6 * range.start..6 * range.end, instance);
+            for pipeline in pipelines {
+                pass.set_pipeline(pipeline);
+                for (window, bind_group) in (first..=last).zip(&bind_groups[first..]) {
+                    pass.set_bind_group(0, bind_group, &[]);
+                    match &calls {
+                        Some(calls) => {
+                            let at = u64::from(draws.number) * LightCalls::SIZE + offset;
+                            pass.draw_indirect(calls[window], at);
+                        }
+                        None => {
+                            let range = within(range, window, self.list_window);
+                            let instance = draws.number..draws.number + 1;
+                            pass.draw(6 * range.start..6 * range.end, instance);
+                        }
                     }
                 }
             }

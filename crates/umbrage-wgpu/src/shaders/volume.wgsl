@@ -124,26 +124,100 @@ fn cap_corner(vertex: u32, extruded: bool, light: u32) -> vec3f {
 // The light cap with the triangle's own vertex order, then the dark cap with the other winding. A
 // triangle taken reversed keeps its order and is drawn by a pipeline that counts the other way
 // round: rasterised in another order, the cap's depth could differ from that of the visible
-// triangle it lies in. A cap in whose plane the eye is, is left out; at infinity it is in none.
+// triangle it lies in.
 @vertex
 fn cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32)
     -> @builtin(position) @invariant vec4f
 {
+    if cap_is_edge_on(cap_corners(index, light)) {
+        return UMBRAGE_NOWHERE;
+    }
+    return cap_vertex(index, light);
+}
+
+// Caps in whose plane the eye is, which `cap` leaves out. Seen as a line, on the rasteriser's grid a
+// cap may be a sliver that its sides leave open; this closes it. What the depths of three corners
+// in a line say of the depth beside it is any number: it is taken from the nearest edge in the line.
+@vertex
+fn edge_on_cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light: u32) -> EdgeOn {
+    let view = umbrage_world_view;
+    let corners = cap_corners(index, light);
+    let a = umbrage_clip(view, corners.a, 1.0);
+    let b = umbrage_clip(view, corners.b, 1.0);
+    let c = umbrage_clip(view, corners.c, 1.0);
+    // Where it is around the eye it is a line nowhere.
+    if !cap_is_edge_on(corners) || min(min(a.w, b.w), c.w) <= 0.0 {
+        return EdgeOn(UMBRAGE_NOWHERE, vec3f(), vec3f(), 0u);
+    }
+    let half = vec2f(0.5, -0.5) * vec2f(view.width, view.height);
+    let columns = mat3x2f(a.xy / a.w * half, b.xy / b.w * half, c.xy / c.w * half);
+    let rows = transpose(columns);
+    let extent = vec2f(extent_of(rows[0]), extent_of(rows[1]));
+    let axis = select(0u, 1u, extent.y > extent.x);
+    let along = rows[axis] + half[axis] * select(1.0, -1.0, axis == 1u);
+    let depth = vec3f(view.near / a.w, view.near / b.w, view.near / c.w);
+    return EdgeOn(cap_vertex(index, light), along, depth, axis);
+}
+
+struct EdgeOn {
+    @builtin(position) @invariant position: vec4f,
+    // Of the corners: pixels along the axis in which they are farther apart, and depth.
+    @location(0) @interpolate(flat) along: vec3f,
+    @location(1) @interpolate(flat) depth: vec3f,
+    @location(2) @interpolate(flat) axis: u32,
+}
+
+@fragment
+fn edge_on_depth(in: EdgeOn) -> @builtin(frag_depth) f32 {
+    let at = in.position[in.axis];
+    let ab = depth_between(at, in.along.xy, in.depth.xy);
+    let bc = depth_between(at, in.along.yz, in.depth.yz);
+    let ca = depth_between(at, in.along.zx, in.depth.zx);
+    return max(max(ab, bc), ca);
+}
+
+// On an edge, whose depth is linear on the screen; 0 beside it.
+fn depth_between(at: f32, along: vec2f, depth: vec2f) -> f32 {
+    let share = (at - along.x) / (along.y - along.x);
+    return select(0.0, mix(depth.x, depth.y, share), share >= 0.0 && share <= 1.0);
+}
+
+fn extent_of(v: vec3f) -> f32 {
+    return max(max(v.x, v.y), v.z) - min(min(v.x, v.y), v.z);
+}
+
+// A corner of the light cap or the dark cap.
+fn cap_vertex(index: u32, light: u32) -> vec4f {
     let corner = index % 6u;
     let extruded = corner >= 3u;
     let k = select(corner, (6u - corner) % 3u, extruded);
     let first = 3u * (caps[index / 6u] >> 1u);
-    let is_infinite = extruded && !(UMBRAGE_FINITE && distances[light] > 0.0);
-    if !is_infinite {
-        let a = cap_corner(umbrage_corner(first), extruded, light);
-        let b = cap_corner(umbrage_corner(first + 1u), extruded, light);
-        let c = cap_corner(umbrage_corner(first + 2u), extruded, light);
-        let size = max(max(length(a), length(b)), length(c));
-        if umbrage_eye_in_plane(cross(b - a, c - a), a, size) {
-            return UMBRAGE_NOWHERE;
-        }
-    }
     return volume_vertex(umbrage_corner(first + k), extruded, light, 1.0);
+}
+
+struct CapCorners {
+    a: vec3f,
+    b: vec3f,
+    c: vec3f,
+    // Those of a dark cap at infinity are nowhere.
+    is_infinite: bool,
+}
+
+// Relative to the eye.
+fn cap_corners(index: u32, light: u32) -> CapCorners {
+    let first = 3u * (caps[index / 6u] >> 1u);
+    let extruded = index % 6u >= 3u;
+    return CapCorners(
+        cap_corner(umbrage_corner(first), extruded, light),
+        cap_corner(umbrage_corner(first + 1u), extruded, light),
+        cap_corner(umbrage_corner(first + 2u), extruded, light),
+        extruded && !(UMBRAGE_FINITE && distances[light] > 0.0),
+    );
+}
+
+fn cap_is_edge_on(q: CapCorners) -> bool {
+    let size = max(max(length(q.a), length(q.b)), length(q.c));
+    return !q.is_infinite && umbrage_eye_in_plane(cross(q.b - q.a, q.c - q.a), q.a, size);
 }
 
 // All of the scissor, to leave it clean for the next light.
