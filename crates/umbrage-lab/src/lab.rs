@@ -151,18 +151,13 @@ impl Lab {
             });
         }
         let targets = Targets::new(&self.gpu, view.size)?;
-        let mut shadows = ShadowRenderer::new(
-            &self.gpu.device,
-            &RendererOptions {
-                color_formats: &[Some(draw.format())],
-                depth_stencil_format: crate::gbuffer::DEPTH_STENCIL,
-                sample_count: 1,
-                depth_clamp: self.gpu.depth_clamp,
-                extrusion: self.method.recipe().unwrap_or_default().extrusion,
-                volume_color,
-                windows: WorldWindows::of(&self.gpu.device, &stage.world)?,
-            },
-        )?;
+        let formats = [Some(draw.format())];
+        let mut options = RendererOptions::new(crate::gbuffer::DEPTH_STENCIL, &formats);
+        options.depth_clamp = self.gpu.depth_clamp;
+        options.extrusion = self.method.recipe().unwrap_or_default().extrusion;
+        options.volume_color = volume_color;
+        options.windows = WorldWindows::of(&self.gpu.device, &stage.world)?;
+        let mut shadows = ShadowRenderer::new(&self.gpu.device, &options)?;
         shadows.upload_world(&self.gpu.device, &self.gpu.queue, &stage.world)?;
         let surface = GBufferPass::new(&self.gpu, stage, &shadows)?;
         // What a mask leaves in the shadow is for pictures; whether a pixel is lit does not hang

@@ -15,7 +15,7 @@ use wgpu::{
 };
 
 use crate::ShadowRenderer;
-use crate::pipelines::Shared;
+use crate::pipelines::VolumeShader;
 
 /// Which faces of volumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,28 +51,21 @@ impl ShadowRenderer {
     /// Pipelines for passes that have this renderer's depth-stencil format and sample count, and
     /// the colour targets of `options`.
     pub fn faces(&self, device: &Device, options: &FaceOptions<'_>) -> VolumeFaces {
-        use CompareFunction::{Greater, LessEqual};
+        let shader = self.shared().shader();
+        let [nearer, not_nearer] = [shader.depth.nearer(), shader.depth.not_nearer()];
         let raise = options.step == CountStep::Raise;
         let [fronts, backs] = [Face::Back, Face::Front];
         let [in_front, behind, behind_reversed] = match raise {
             true => [fronts, backs, fronts],
             false => [backs, fronts, backs],
         };
-        let build = |entry, culled, compare| {
-            pipeline(
-                device,
-                &self.pipelines.shared,
-                options,
-                entry,
-                culled,
-                compare,
-            )
-        };
+        let build =
+            |entry, culled, compare| pipeline(device, shader, options, entry, culled, compare);
         VolumeFaces {
-            zpass_sides: build("side", in_front, Greater),
-            zfail_sides: build("zfail_side", behind, LessEqual),
-            zfail_caps: build("cap", behind, LessEqual),
-            zfail_reversed_caps: build("cap", behind_reversed, LessEqual),
+            zpass_sides: build("side", in_front, nearer),
+            zfail_sides: build("zfail_side", behind, not_nearer),
+            zfail_caps: build("cap", behind, not_nearer),
+            zfail_reversed_caps: build("cap", behind_reversed, not_nearer),
         }
     }
 
@@ -87,13 +80,13 @@ impl ShadowRenderer {
     ) {
         let sides = [&faces.zpass_sides, &faces.zfail_sides];
         let caps = [&faces.zfail_caps, &faces.zfail_reversed_caps].map(std::slice::from_ref);
-        self.draw_volume(pass, number, light, sides, caps);
+        self.view().draw_volume(pass, number, light, sides, caps);
     }
 }
 
 fn pipeline(
     device: &Device,
-    shared: &Shared,
+    shader: &VolumeShader,
     options: &FaceOptions<'_>,
     entry_point: &str,
     culled: Face,
@@ -101,23 +94,23 @@ fn pipeline(
 ) -> RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("umbrage faces"),
-        layout: Some(&shared.layout),
+        layout: Some(&shader.layout),
         vertex: wgpu::VertexState {
-            module: &shared.module,
+            module: &shader.module,
             entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &Shared::constants(shared.extrusion),
+                constants: &shader.constants(),
                 ..Default::default()
             },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState {
             cull_mode: Some(culled),
-            unclipped_depth: shared.depth_clamp,
+            unclipped_depth: shader.depth_clamp,
             ..wgpu::PrimitiveState::default()
         },
         depth_stencil: Some(DepthStencilState {
-            format: shared.depth_stencil_format,
+            format: shader.depth_stencil_format,
             depth_write_enabled: Some(false),
             depth_compare: Some(depth_compare),
             stencil: StencilState {
@@ -129,11 +122,11 @@ fn pipeline(
             bias: DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState {
-            count: shared.sample_count,
+            count: shader.sample_count,
             ..wgpu::MultisampleState::default()
         },
         fragment: Some(wgpu::FragmentState {
-            module: &shared.module,
+            module: &shader.module,
             entry_point: Some("one"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: options.targets,

@@ -9,10 +9,11 @@ use umbrage_core::volume::Volumes;
 use umbrage_core::{Light, View};
 use wgpu::TextureFormat;
 
-use crate::WorldWindows;
+use crate::{DepthRange, WorldWindows};
 
 /// What the host's frame looks like.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct RendererOptions<'a> {
     /// Colour targets of the pass given to [`ShadowRenderer::record`](crate::ShadowRenderer::record).
     pub color_formats: &'a [Option<TextureFormat>],
@@ -20,6 +21,8 @@ pub struct RendererOptions<'a> {
     pub depth_stencil_format: TextureFormat,
     /// Its sample count.
     pub sample_count: u32,
+    /// Which way its depth runs.
+    pub depth: DepthRange,
     /// Whether the device has `DEPTH_CLIP_CONTROL`, and the host's depth pass uses it.
     pub depth_clamp: bool,
     /// As in the options of the plans to come. Made for infinite volumes, a renderer extrudes every
@@ -29,6 +32,26 @@ pub struct RendererOptions<'a> {
     pub volume_color: VolumeColor,
     /// In how many windows the worlds to come are: [`WorldWindows::of`] tells what a world needs.
     pub windows: WorldWindows,
+}
+
+impl<'a> RendererOptions<'a> {
+    /// For these formats, one sample a pixel, reversed depth without clamping, infinite volumes that
+    /// write no colour, and worlds of one window an array.
+    pub fn new(
+        depth_stencil_format: TextureFormat,
+        color_formats: &'a [Option<TextureFormat>],
+    ) -> Self {
+        Self {
+            color_formats,
+            depth_stencil_format,
+            sample_count: 1,
+            depth: DepthRange::Reversed,
+            depth_clamp: false,
+            extrusion: Extrusion::Infinite,
+            volume_color: VolumeColor::None,
+            windows: WorldWindows::default(),
+        }
+    }
 }
 
 /// What volumes add to the first colour target, which must then be blendable.
@@ -130,6 +153,7 @@ pub struct Frame<'a> {
 
 /// Bytes that one [`ShadowRenderer::prepare`](crate::ShadowRenderer::prepare) handed to the queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Uploaded {
     /// Quads and caps.
     pub volume_bytes: u64,
@@ -140,7 +164,7 @@ pub struct Uploaded {
 /// The uniform behind `struct View` of [`CLIP_WGSL`](crate::CLIP_WGSL).
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct ViewUniform {
+pub(crate) struct ViewUniform {
     eye: [f32; 3],
     scale_x: f32,
     right: [f32; 3],
@@ -148,15 +172,16 @@ pub struct ViewUniform {
     up: [f32; 3],
     near: f32,
     forward: [f32; 3],
-    width: f32,
-    height: f32,
-    unused: [f32; 3],
+    size: [f32; 2],
+    origin: [f32; 2],
+    reversed: u32,
     eye_residual: [f32; 3],
     padding: f32,
 }
 
-impl From<&View> for ViewUniform {
-    fn from(view: &View) -> Self {
+impl ViewUniform {
+    /// Of a view whose upper left pixel is `origin` of its target.
+    pub(crate) fn new(view: &View, origin: [u32; 2], depth: DepthRange) -> Self {
         let [eye, eye_residual] = split(view.eye);
         Self {
             eye: eye.to_array(),
@@ -166,9 +191,9 @@ impl From<&View> for ViewUniform {
             up: view.up.to_array(),
             near: view.near,
             forward: view.forward.to_array(),
-            width: view.size[0] as f32,
-            height: view.size[1] as f32,
-            unused: [0.0; 3],
+            size: view.size.map(|side| side as f32),
+            origin: origin.map(|side| side as f32),
+            reversed: u32::from(depth == DepthRange::Reversed),
             eye_residual: eye_residual.to_array(),
             padding: 0.0,
         }

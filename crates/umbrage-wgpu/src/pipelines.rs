@@ -4,14 +4,15 @@ use std::borrow::Cow;
 
 use umbrage_core::frame::Extrusion;
 use wgpu::{
-    BindGroupLayout, CompareFunction, DepthStencilState, Device, RenderPipeline, ShaderModule,
-    StencilFaceState, StencilOperation, StencilState,
+    BindGroupLayout, ColorTargetState, CompareFunction, DepthStencilState, Device, RenderPipeline,
+    ShaderModule, StencilFaceState, StencilOperation, StencilState, TextureFormat,
 };
 
-use crate::{CLIP_WGSL, RendererOptions, VOLUME_WGSL, VolumeColor};
+use crate::{CLIP_WGSL, DepthRange, RendererOptions, VOLUME_WGSL, VolumeColor};
 
+/// What draws volumes in passes with certain colour targets.
 #[derive(Debug)]
-pub(crate) struct Pipelines {
+pub struct VolumePipelines {
     /// Of lights that are drawn as a whole.
     pub(crate) whole: Counters,
     /// Of parts: seven bits count.
@@ -19,7 +20,6 @@ pub(crate) struct Pipelines {
     /// Between parts; see [`PartPlan`](umbrage_core::frame::PartPlan).
     pub(crate) join: RenderPipeline,
     pub(crate) clean: RenderPipeline,
-    pub(crate) shared: Shared,
 }
 
 /// What counts volumes.
@@ -49,24 +49,52 @@ pub(crate) const PART_BITS: u32 = 0x7f;
 /// The bit that remembers shadows of parts.
 pub(crate) const SHADOW_BIT: u32 = 0x80;
 
-/// Vertex shader of caps that are seen as a line: their fragments are at one depth.
+/// Shaders of caps that are seen as a line, whose fragments say their own depth.
 const EDGE_ON_CAP: &str = "edge_on_cap";
+const EDGE_ON_DEPTH: &str = "edge_on_depth";
 
 /// What all pipelines of volumes are made from.
 #[derive(Debug)]
-pub(crate) struct Shared {
+pub(crate) struct VolumeShader {
     pub(crate) module: ShaderModule,
     pub(crate) layout: wgpu::PipelineLayout,
     pub(crate) depth_stencil_format: wgpu::TextureFormat,
     pub(crate) sample_count: u32,
+    pub(crate) depth: DepthRange,
     pub(crate) depth_clamp: bool,
     pub(crate) extrusion: Extrusion,
 }
 
-impl Shared {
-    /// Constants of the vertex shaders, for volumes that end as `extrusion` says.
-    pub(crate) fn constants(extrusion: Extrusion) -> [(&'static str, f64); 1] {
-        let is_finite = extrusion != Extrusion::Infinite;
+impl VolumeShader {
+    pub(crate) fn new(
+        device: &Device,
+        options: &RendererOptions<'_>,
+        layouts: [&BindGroupLayout; 2],
+        world_wgsl: &str,
+    ) -> Self {
+        Self {
+            module: device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("umbrage volume"),
+                source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
+                    "{CLIP_WGSL}\n{world_wgsl}\n{VOLUME_WGSL}"
+                ))),
+            }),
+            layout: device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("umbrage volume"),
+                bind_group_layouts: &layouts.map(Some),
+                immediate_size: 0,
+            }),
+            depth_stencil_format: options.depth_stencil_format,
+            sample_count: options.sample_count,
+            depth: options.depth,
+            depth_clamp: options.depth_clamp,
+            extrusion: options.extrusion,
+        }
+    }
+
+    /// Constants of the vertex shaders.
+    pub(crate) fn constants(&self) -> [(&'static str, f64); 1] {
+        let is_finite = self.extrusion != Extrusion::Infinite;
         [("UMBRAGE_FINITE", f64::from(u8::from(is_finite)))]
     }
 }
@@ -86,28 +114,24 @@ enum Counts {
     Join,
 }
 
-impl Pipelines {
+impl VolumePipelines {
     pub(crate) fn new(
         device: &Device,
-        options: &RendererOptions<'_>,
-        layouts: [&BindGroupLayout; 2],
-        world_wgsl: &str,
+        shader: &VolumeShader,
+        color_formats: &[Option<TextureFormat>],
+        volume_color: VolumeColor,
     ) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("umbrage volume"),
-            source: wgpu::ShaderSource::Wgsl(Cow::Owned(format!(
-                "{CLIP_WGSL}\n{world_wgsl}\n{VOLUME_WGSL}"
-            ))),
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("umbrage volume"),
-            bind_group_layouts: &layouts.map(Some),
-            immediate_size: 0,
-        });
         let build = |label, entry, counts, bits| {
-            pipeline(
-                device, options, &layout, &module, label, entry, counts, bits,
-            )
+            let is_edge_on = entry == EDGE_ON_CAP;
+            let volume_color = match counts {
+                Counts::Clean | Counts::Join => VolumeColor::None,
+                _ if is_edge_on => VolumeColor::None,
+                _ => volume_color,
+            };
+            let (fragment, targets) = targets(color_formats, volume_color);
+            let fragment = if is_edge_on { EDGE_ON_DEPTH } else { fragment };
+            let stencil = stencil(counts, bits);
+            pipeline(device, shader, label, [entry, fragment], stencil, &targets)
         };
         let caps = |counts, bits| {
             ["cap", EDGE_ON_CAP].map(|entry| build("umbrage z-fail caps", entry, counts, bits))
@@ -123,29 +147,11 @@ impl Pipelines {
             part: counters(PART_BITS),
             join: build("umbrage join", "everywhere", Counts::Join, 0xff),
             clean: build("umbrage clean", "everywhere", Counts::Clean, 0xff),
-            shared: Shared {
-                module,
-                layout,
-                depth_stencil_format: options.depth_stencil_format,
-                sample_count: options.sample_count,
-                depth_clamp: options.depth_clamp,
-                extrusion: options.extrusion,
-            },
         }
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "two callers, one line each")]
-fn pipeline(
-    device: &Device,
-    options: &RendererOptions<'_>,
-    layout: &wgpu::PipelineLayout,
-    module: &ShaderModule,
-    label: &str,
-    vertex_entry: &str,
-    counts: Counts,
-    write_mask: u32,
-) -> RenderPipeline {
+fn stencil(counts: Counts, write_mask: u32) -> StencilState {
     let face = |pass_op, depth_fail_op| StencilFaceState {
         compare: CompareFunction::Always,
         fail_op: StencilOperation::Keep,
@@ -170,88 +176,91 @@ fn pipeline(
         Counts::Join => PART_BITS,
         _ => 0xff,
     };
-    let is_edge_on = vertex_entry == EDGE_ON_CAP;
-    let volume_color = match counts {
-        Counts::Clean | Counts::Join => VolumeColor::None,
-        _ if is_edge_on => VolumeColor::None,
-        _ => options.volume_color,
-    };
-    // The pass has the host's colour targets; volumes leave them alone, but for debug views.
+    StencilState {
+        front,
+        back,
+        read_mask,
+        write_mask,
+    }
+}
+
+/// The fragment shader, and the pass's colour targets: volumes leave them alone, but for debug views.
+fn targets(
+    color_formats: &[Option<TextureFormat>],
+    volume_color: VolumeColor,
+) -> (&'static str, Vec<Option<ColorTargetState>>) {
     let add = wgpu::BlendComponent {
         src_factor: wgpu::BlendFactor::One,
         dst_factor: wgpu::BlendFactor::One,
         operation: wgpu::BlendOperation::Add,
     };
-    let (entry_point, visible) = match volume_color {
-        VolumeColor::None if is_edge_on => ("edge_on_depth", None),
-        VolumeColor::None => ("nothing", None),
-        VolumeColor::Fragments => (
-            "one",
-            Some(wgpu::BlendState {
-                color: add,
-                alpha: add,
-            }),
-        ),
-        VolumeColor::Layers => (
-            "layer",
-            Some(wgpu::BlendState {
-                color: add,
-                alpha: add,
-            }),
-        ),
+    let add = wgpu::BlendState {
+        color: add,
+        alpha: add,
     };
-    let targets: Vec<_> = (0..)
-        .zip(options.color_formats)
-        .map(|(number, format)| {
-            let blend = visible.filter(|_| number == 0);
-            format.map(|format| wgpu::ColorTargetState {
-                format,
-                blend,
-                write_mask: match blend {
-                    Some(_) => wgpu::ColorWrites::ALL,
-                    None => wgpu::ColorWrites::empty(),
-                },
-            })
+    let (entry_point, visible) = match volume_color {
+        VolumeColor::None => ("nothing", None),
+        VolumeColor::Fragments => ("one", Some(add)),
+        VolumeColor::Layers => ("layer", Some(add)),
+    };
+    let target = |(number, format): (usize, &Option<TextureFormat>)| {
+        let blend = visible.filter(|_| number == 0);
+        format.map(|format| ColorTargetState {
+            format,
+            blend,
+            write_mask: match blend {
+                Some(_) => wgpu::ColorWrites::ALL,
+                None => wgpu::ColorWrites::empty(),
+            },
         })
-        .collect();
+    };
+    let targets = color_formats.iter().enumerate().map(target).collect();
+    (entry_point, targets)
+}
+
+fn pipeline(
+    device: &Device,
+    shader: &VolumeShader,
+    label: &str,
+    [vertex_entry, fragment_entry]: [&str; 2],
+    stencil: StencilState,
+    targets: &[Option<ColorTargetState>],
+) -> RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),
-        layout: Some(layout),
+        layout: Some(&shader.layout),
         vertex: wgpu::VertexState {
-            module,
+            module: &shader.module,
             entry_point: Some(vertex_entry),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &Shared::constants(options.extrusion),
+                constants: &shader.constants(),
                 ..Default::default()
             },
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState {
             cull_mode: None,
-            unclipped_depth: options.depth_clamp,
+            unclipped_depth: shader.depth_clamp,
             ..wgpu::PrimitiveState::default()
         },
         depth_stencil: Some(DepthStencilState {
-            format: options.depth_stencil_format,
+            format: shader.depth_stencil_format,
             depth_write_enabled: Some(false),
-            depth_compare: Some(CompareFunction::Greater),
-            stencil: StencilState {
-                front,
-                back,
-                read_mask,
-                write_mask,
-            },
+            depth_compare: Some(shader.depth.nearer()),
+            stencil,
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState {
-            count: options.sample_count,
+            count: shader.sample_count,
             ..wgpu::MultisampleState::default()
         },
-        fragment: (is_edge_on || !targets.is_empty()).then(|| wgpu::FragmentState {
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &targets,
+        fragment: (fragment_entry == EDGE_ON_DEPTH || !targets.is_empty()).then(|| {
+            wgpu::FragmentState {
+                module: &shader.module,
+                entry_point: Some(fragment_entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets,
+            }
         }),
         multiview_mask: None,
         cache: None,

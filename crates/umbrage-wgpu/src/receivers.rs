@@ -91,11 +91,17 @@ pub(crate) fn tile_rows(view: &View) -> u32 {
     view.size[1].div_ceil(TILE)
 }
 
+/// What finds receivers, in whatever view.
 #[derive(Debug)]
-pub(crate) struct Receivers {
+pub(crate) struct ReceiverPipelines {
     surface: ComputePipeline,
     light: ComputePipeline,
     layout: BindGroupLayout,
+}
+
+/// The receivers of one view.
+#[derive(Debug)]
+pub(crate) struct Receivers {
     tiles: Growing,
     pub(crate) kept_quads: Split,
     /// A window of quads and caps each.
@@ -111,22 +117,19 @@ struct Window {
 
 /// What the shader reads and does not own.
 pub(crate) struct Inputs<'a> {
+    pub(crate) pipelines: &'a ReceiverPipelines,
     pub(crate) world: &'a BindGroup,
     pub(crate) quads: &'a Split,
     pub(crate) spans: &'a Buffer,
     pub(crate) depth: &'a TextureView,
 }
 
-impl Receivers {
+impl ReceiverPipelines {
     /// `None` where the device lacks what it takes.
-    pub(crate) fn new(
-        device: &Device,
-        sample_count: u32,
-        world: &WorldBuffers,
-    ) -> Result<Option<Self>, RenderError> {
+    pub(crate) fn new(device: &Device, sample_count: u32, world: &WorldBuffers) -> Option<Self> {
         let features = device.features();
         if sample_count != 1 || !features.contains(wgpu::Features::INDIRECT_FIRST_INSTANCE) {
-            return Ok(None);
+            return None;
         }
         let layout = bind_group_layout(device);
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -152,16 +155,23 @@ impl Receivers {
                 cache: None,
             })
         };
-        let bytes = list_window(device) * 4;
-        let none = BufferUsages::empty();
-        Ok(Some(Self {
+        Some(Self {
             surface: pipeline("surface"),
             light: pipeline("light"),
             layout,
+        })
+    }
+}
+
+impl Receivers {
+    pub(crate) fn new(device: &Device) -> Result<Self, RenderError> {
+        let bytes = list_window(device) * 4;
+        let none = BufferUsages::empty();
+        Ok(Self {
             tiles: Growing::new(device, "umbrage tiles", none)?,
             kept_quads: Split::open(device, "umbrage kept quads", bytes, none)?,
             windows: Vec::new(),
-        }))
+        })
     }
 
     /// Of each window, the calls of each light.
@@ -231,11 +241,11 @@ impl Receivers {
             timestamp_writes,
         });
         pass.set_bind_group(1, inputs.world, &[]);
-        pass.set_pipeline(&self.surface);
+        pass.set_pipeline(&inputs.pipelines.surface);
         pass.set_bind_group(0, bind_groups.peek(), &[]);
         let [columns, rows] = size.map(|side| side.div_ceil(TILE * 8));
         pass.dispatch_workgroups(columns, rows, 1);
-        pass.set_pipeline(&self.light);
+        pass.set_pipeline(&inputs.pipelines.light);
         let columns = lights.min(1 << 15);
         for bind_group in bind_groups {
             pass.set_bind_group(0, &bind_group, &[]);
@@ -266,7 +276,7 @@ impl Receivers {
             .collect();
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("umbrage receivers"),
-            layout: &self.layout,
+            layout: &inputs.pipelines.layout,
             entries: &entries,
         })
     }

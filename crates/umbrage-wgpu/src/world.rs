@@ -8,7 +8,7 @@ use wgpu::{BindGroup, BindGroupLayout, Buffer, Device, Queue, ShaderStages};
 
 use crate::RenderError;
 use crate::buffers::Written;
-use crate::renderer::buffers_layout;
+use crate::shared::buffers_layout;
 use crate::split::Split;
 use crate::windows::{Windows, WorldWindows};
 
@@ -24,8 +24,8 @@ pub(crate) struct WorldBuffers {
     /// u32 triples.
     triangles: Split,
     pub(crate) layout: BindGroupLayout,
-    /// Of these buffers and a view, for `world.wgsl`.
-    pub(crate) bind_group: Option<BindGroup>,
+    /// Bind groups of another generation are of buffers that were replaced.
+    pub(crate) generation: u64,
     seen: Seen,
 }
 
@@ -64,7 +64,7 @@ impl WorldBuffers {
             triangles: split("umbrage triangles", windows.corners, 4)?,
             layout: layout(device, &windows),
             windows,
-            bind_group: None,
+            generation: 0,
             seen: Seen::default(),
         })
     }
@@ -92,26 +92,22 @@ impl WorldBuffers {
         arrays.into_iter().flat_map(Split::buffers)
     }
 
-    /// Brings the buffers up to date with the world; true if the bind group, which has `view`, is
-    /// another than before.
+    /// Brings the buffers up to date with the world.
     pub(crate) fn update(
         &mut self,
         device: &Device,
         queue: &Queue,
         world: &World,
-        view: &Buffer,
-    ) -> Result<bool, RenderError> {
-        let bind_group = self.bind_group.take();
-        let written = self.write(device, queue, world)?;
-        self.bind_group = bind_group.filter(|_| !written.replaced);
-        let is_new = self.bind_group.is_none();
-        if is_new {
-            self.bind_group = Some(self.bind(device, view));
+    ) -> Result<(), RenderError> {
+        let written = self.write(device, queue, world);
+        if written.as_ref().map_or(true, |written| written.replaced) {
+            self.generation += 1;
         }
-        Ok(is_new)
+        written.map(|_| ())
     }
 
-    fn bind(&self, device: &Device, view: &Buffer) -> BindGroup {
+    /// What `world.wgsl` reads: these buffers and a view.
+    pub(crate) fn bind(&self, device: &Device, view: &Buffer) -> BindGroup {
         let entries: Vec<_> = (0..)
             .zip(std::iter::once(view).chain(self.buffers()))
             .map(|(binding, buffer)| wgpu::BindGroupEntry {
@@ -204,7 +200,8 @@ impl WorldBuffers {
 fn layout(device: &Device, windows: &WorldWindows) -> BindGroupLayout {
     let storage = wgpu::BufferBindingType::Storage { read_only: true };
     let everywhere = ShaderStages::VERTEX | ShaderStages::COMPUTE;
-    let mut types = vec![(wgpu::BufferBindingType::Uniform, everywhere)];
+    let view = everywhere | ShaderStages::FRAGMENT;
+    let mut types = vec![(wgpu::BufferBindingType::Uniform, view)];
     for (array, stages) in [
         (windows.positions, everywhere),
         (windows.edges, everywhere),

@@ -66,6 +66,7 @@ pub enum LightPath {
 
 /// Why a light takes the z-fail path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ZFailReason {
     /// The eye is (almost) on a side of its volume.
     EyeOnSide,
@@ -77,6 +78,7 @@ pub enum ZFailReason {
 
 /// Why a light cannot matter in this view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SkipReason {
     /// It is no light: [`Light::is_usable`].
     Unusable,

@@ -27,23 +27,12 @@ struct Varying {
 
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32, @builtin(instance_index) start: u32) -> Varying {
-    let triangle = corner / 3u;
-    let first = 3u * triangle;
-    let a = umbrage_corner(first);
-    let b = umbrage_corner(first + 1u);
-    let c = umbrage_corner(first + 2u);
-    let face = cross(umbrage_between(a, b), umbrage_between(a, c));
-    let q = array(umbrage_from_eye(a), umbrage_from_eye(b), umbrage_from_eye(c));
-    let size = max(max(length(q[0]), length(q[1])), length(q[2]));
+    let ours = umbrage_world_corner(corner);
     var out: Varying;
-    if umbrage_eye_in_plane(face, q[0], size) {
-        out.clip = UMBRAGE_NOWHERE;
-        return out;
-    }
-    out.clip = umbrage_clip(umbrage_world_view, umbrage_from_eye(umbrage_corner(corner)), 1.0);
+    out.clip = ours.clip;
     out.distance = out.clip.w;
-    out.material = triangle_material[triangle - start];
-    out.normal = face;
+    out.material = triangle_material[corner / 3u - start];
+    out.normal = ours.normal;
     let at = corner - 3u * start;
     if arrayLength(&normals) > 1u && normals[at] != 0u {
         out.normal = unpack4x8snorm(normals[at]).xyz;

@@ -11,6 +11,11 @@ struct View {
     forward: vec3f,
     width: f32,
     height: f32,
+    // The view's upper left pixel in its target.
+    origin_x: f32,
+    origin_y: f32,
+    // 1 if depth is near / distance, 0 if it is 1 - near / distance.
+    reversed: u32,
     // What f32 leaves of the eye.
     eye_residual: vec3f,
 }
@@ -22,14 +27,29 @@ fn umbrage_minus_eye(view: View, rounded: vec3f, residual: vec3f) -> vec3f {
 }
 
 // Clip position of a world point (w = 1) at q = point - eye, or of the point at infinity (w = 0)
-// in direction q. Reversed, infinite depth: near / distance.
+// in direction q. The far plane is infinite.
 fn umbrage_clip(view: View, q: vec3f, w: f32) -> vec4f {
+    let ahead = dot(view.forward, q);
+    let near = view.near * w;
     return vec4f(
         view.scale_x * dot(view.right, q),
         view.scale_y * dot(view.up, q),
-        view.near * w,
-        dot(view.forward, q),
+        select(ahead - near, near, view.reversed == 1u),
+        ahead,
     );
+}
+
+// near / distance, from a depth as the depth buffer has it; 0 where there is no surface.
+fn umbrage_nearness(view: View, depth: f32) -> f32 {
+    return select(1.0 - depth, depth, view.reversed == 1u);
+}
+
+// From the eye along the ray through a place in the target, in pixels: as far as the ray goes while
+// the distance along the viewing direction grows by 1.
+fn umbrage_ray(view: View, pixel: vec2f) -> vec3f {
+    let within = pixel - vec2f(view.origin_x, view.origin_y);
+    let ndc = vec2f(2.0, -2.0) * within / vec2f(view.width, view.height) + vec2f(-1.0, 1.0);
+    return view.forward + view.right * (ndc.x / view.scale_x) + view.up * (ndc.y / view.scale_y);
 }
 
 // Whether the eye, as far as f32 can tell, lies in the plane of a polygon: `normal` of any length,

@@ -76,10 +76,15 @@ fn with_point(a: Box, p: vec3f, margin: vec3f) -> Box {
     return Box(min(a.low, p - margin), 1u, max(a.high, p + margin), 0u);
 }
 
+fn view_size() -> vec2u {
+    return vec2u(u32(umbrage_world_view.width), u32(umbrage_world_view.height));
+}
+
 @compute @workgroup_size(8, 8)
 fn surface(@builtin(global_invocation_id) id: vec3u) {
     let view = umbrage_world_view;
-    let size = textureDimensions(depth_texture);
+    let size = view_size();
+    let origin = vec2u(u32(view.origin_x), u32(view.origin_y));
     let across = (size + TILE - 1u) / TILE;
     if all(id.xy == vec2u(0u)) {
         // From here on light draws go by spans.
@@ -92,12 +97,10 @@ fn surface(@builtin(global_invocation_id) id: vec3u) {
     let end = min((id.xy + 1u) * TILE, size);
     for (var y = id.y * TILE; y < end.y; y++) {
         for (var x = id.x * TILE; x < end.x; x++) {
-            let depth = textureLoad(depth_texture, vec2u(x, y), 0);
+            let texel = origin + vec2u(x, y);
+            let depth = umbrage_nearness(view, textureLoad(depth_texture, texel, 0));
             if depth > 0.0 {
-                let pixel = vec2f(f32(x), f32(y)) + 0.5;
-                let ndc = vec2f(2.0, -2.0) * pixel / vec2f(size) + vec2f(-1.0, 1.0);
-                let ray = view.forward + view.right * (ndc.x / view.scale_x)
-                    + view.up * (ndc.y / view.scale_y);
+                let ray = umbrage_ray(view, vec2f(texel) + 0.5);
                 // Before the near plane all depths are 1.
                 let nearest = select(view.near / (depth + DEPTH_ERROR), 0.0, depth >= 1.0);
                 let farthest = min(FAR, view.near / max(depth - DEPTH_ERROR, 1e-30));
@@ -174,7 +177,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 // The visible surface that may lie in the light's range, in every 64th row of tiles; and for each
 // of these rows the span of tiles that has any.
 fn in_range(number: u32, ours: LightPlan, homogeneous: UmbrageLight, lane: u32) -> Box {
-    let across = (textureDimensions(depth_texture) + TILE - 1u) / TILE;
+    let across = (view_size() + TILE - 1u) / TILE;
     let center = umbrage_light_from_eye(homogeneous);
     // Far above the rounding of the distance, and below what a tile's box adds to it.
     let range = ours.range * 1.00390625;

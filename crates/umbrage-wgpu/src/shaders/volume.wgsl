@@ -154,32 +154,33 @@ fn edge_on_cap(@builtin(vertex_index) index: u32, @builtin(instance_index) light
     let rows = transpose(columns);
     let extent = vec2f(extent_of(rows[0]), extent_of(rows[1]));
     let axis = select(0u, 1u, extent.y > extent.x);
-    let along = rows[axis] + half[axis] * select(1.0, -1.0, axis == 1u);
-    let depth = vec3f(view.near / a.w, view.near / b.w, view.near / c.w);
-    return EdgeOn(cap_vertex(index, light), along, depth, axis);
+    let middle = vec2f(view.origin_x, view.origin_y) + abs(half);
+    let nearness = vec3f(view.near / a.w, view.near / b.w, view.near / c.w);
+    return EdgeOn(cap_vertex(index, light), rows[axis] + middle[axis], nearness, axis);
 }
 
 struct EdgeOn {
     @builtin(position) @invariant position: vec4f,
-    // Of the corners: pixels along the axis in which they are farther apart, and depth.
+    // Of the corners: pixels along the axis in which they are farther apart, and near / distance.
     @location(0) @interpolate(flat) along: vec3f,
-    @location(1) @interpolate(flat) depth: vec3f,
+    @location(1) @interpolate(flat) nearness: vec3f,
     @location(2) @interpolate(flat) axis: u32,
 }
 
 @fragment
 fn edge_on_depth(in: EdgeOn) -> @builtin(frag_depth) f32 {
     let at = in.position[in.axis];
-    let ab = depth_between(at, in.along.xy, in.depth.xy);
-    let bc = depth_between(at, in.along.yz, in.depth.yz);
-    let ca = depth_between(at, in.along.zx, in.depth.zx);
-    return max(max(ab, bc), ca);
+    let ab = nearness_between(at, in.along.xy, in.nearness.xy);
+    let bc = nearness_between(at, in.along.yz, in.nearness.yz);
+    let ca = nearness_between(at, in.along.zx, in.nearness.zx);
+    let nearest = max(max(ab, bc), ca);
+    return select(1.0 - nearest, nearest, umbrage_world_view.reversed == 1u);
 }
 
-// On an edge, whose depth is linear on the screen; 0 beside it.
-fn depth_between(at: f32, along: vec2f, depth: vec2f) -> f32 {
+// On an edge, along which it is linear on the screen; 0 beside it.
+fn nearness_between(at: f32, along: vec2f, nearness: vec2f) -> f32 {
     let share = (at - along.x) / (along.y - along.x);
-    return select(0.0, mix(depth.x, depth.y, share), share >= 0.0 && share <= 1.0);
+    return select(0.0, mix(nearness.x, nearness.y, share), share >= 0.0 && share <= 1.0);
 }
 
 fn extent_of(v: vec3f) -> f32 {

@@ -44,3 +44,29 @@ fn umbrage_from_light(vertex: u32, light: UmbrageLight) -> vec3f {
 fn umbrage_light_from_eye(light: UmbrageLight) -> vec3f {
     return umbrage_minus_eye(umbrage_world_view, light.rounded.xyz, light.residual.xyz);
 }
+
+// A corner of a triangle, as a depth pass draws it that is to agree with the volumes to the last bit.
+struct UmbrageCorner {
+    // For an output that is @builtin(position) @invariant.
+    clip: vec4f,
+    // From the eye.
+    place: vec3f,
+    // Of the triangle, towards its front; of any length, 0 where it is left out.
+    normal: vec3f,
+}
+
+// Corner number `corner` of the world: three times a triangle's number, plus 0, 1 or 2.
+fn umbrage_world_corner(corner: u32) -> UmbrageCorner {
+    let first = corner - corner % 3u;
+    let a = umbrage_corner(first);
+    let b = umbrage_corner(first + 1u);
+    let c = umbrage_corner(first + 2u);
+    let normal = cross(umbrage_between(a, b), umbrage_between(a, c));
+    let q = array(umbrage_from_eye(a), umbrage_from_eye(b), umbrage_from_eye(c));
+    let size = max(max(length(q[0]), length(q[1])), length(q[2]));
+    if umbrage_eye_in_plane(normal, q[0], size) {
+        return UmbrageCorner(UMBRAGE_NOWHERE, q[0], vec3f(0.0));
+    }
+    let place = umbrage_from_eye(umbrage_corner(corner));
+    return UmbrageCorner(umbrage_clip(umbrage_world_view, place, 1.0), place, normal);
+}

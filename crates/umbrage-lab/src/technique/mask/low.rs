@@ -7,8 +7,8 @@
 
 use umbrage_core::View;
 use umbrage_core::frame::bounds::light_rect;
-use umbrage_core::frame::{Extrusion, FramePlan, Rect};
-use umbrage_wgpu::{Frame, RendererOptions, ShadowRenderer, Uploaded, VolumeColor, WorldWindows};
+use umbrage_core::frame::{FramePlan, Rect};
+use umbrage_wgpu::{Frame, RendererOptions, ShadowRenderer, Uploaded, WorldWindows};
 
 use super::low_depth::LowDepth;
 use crate::gbuffer::{DEPTH_STENCIL, depth_only, texture};
@@ -39,15 +39,10 @@ impl LowFrame {
         divisor: u32,
         format: wgpu::TextureFormat,
     ) -> Result<Self, GpuError> {
-        let options = RendererOptions {
-            color_formats: &[Some(format)],
-            depth_stencil_format: DEPTH_STENCIL,
-            sample_count: 1,
-            depth_clamp: gpu.depth_clamp,
-            extrusion: Extrusion::Infinite,
-            volume_color: VolumeColor::None,
-            windows,
-        };
+        let formats = [Some(format)];
+        let mut options = RendererOptions::new(DEPTH_STENCIL, &formats);
+        options.depth_clamp = gpu.depth_clamp;
+        options.windows = windows;
         let shadows = ShadowRenderer::new(&gpu.device, &options)?;
         Ok(Self {
             divisor,
