@@ -153,7 +153,6 @@ pub struct Frame<'a> {
 
 /// Bytes that one [`ShadowRenderer::prepare`](crate::ShadowRenderer::prepare) handed to the queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Uploaded {
     /// Quads and caps.
     pub volume_bytes: u64,
