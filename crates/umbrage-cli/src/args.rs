@@ -1,6 +1,6 @@
 //! What can be typed: verbs and options. `umbrage <verb> --help` is written here.
 
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -17,6 +17,7 @@ use crate::values::{
     adapter, fps, metres, ratio, seconds, time, weld,
 };
 use umbrage_report::Table;
+use umbrage_view::DebugView;
 
 /// Exact shadows from hundreds of lights in large triangle worlds: renders them, measures them
 /// against an oracle, and says which light costs what.
@@ -35,7 +36,7 @@ First steps:
   umbrage inspect map.glb
   umbrage check map.glb --camera auto --size 640x360
 
-Exit codes: 0 success, 1 a check failed, 2 bad input or usage, 3 no usable adapter";
+Exit codes: 0 success, 1 a check failed, 2 bad input or usage, 3 no usable adapter or display";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -45,6 +46,8 @@ pub(crate) enum Verb {
     Volumes(VolumesArgs),
     Bench(BenchArgs),
     Stress(StressArgs),
+    // Boxed: it is far larger than the others.
+    View(Box<WindowArgs>),
     Gen(GenArgs),
 }
 
@@ -326,6 +329,45 @@ Examples:
   umbrage stress --cases 100000 --render 3000 --seed 7 --json stress.json
   umbrage stress --family slivers --family lattice --render 0 --time 60
   umbrage stress --case soup:9e3779b97f4a7c15 -o failures";
+
+/// Opens a window on the scene: fly through it, solo and mute its lights, see what each costs, and what
+/// its shadow is made of.
+#[derive(Debug, Args)]
+#[command(after_help = VIEW_EXAMPLES)]
+pub(crate) struct WindowArgs {
+    /// A .glb, .gltf or .obj file, or gen:NAME?key=value&...
+    pub(crate) scene: String,
+    /// Debug view to begin with: lit, volumes, silhouettes, layers, lights, scissors, boxes, subset or
+    /// wrong
+    #[arg(long = "debug", value_name = "VIEW", default_value = "lit")]
+    pub(crate) shown: DebugView,
+    /// Name of the light to choose at the beginning
+    #[arg(long, value_name = "LIGHT")]
+    pub(crate) select: Option<String>,
+    /// Write a picture of the window, panels included, and close it: once --frames are drawn, every
+    /// light's cost is measured and what the debug view counts is there
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) screenshot: Option<PathBuf>,
+    /// Frames before the screenshot
+    #[arg(long, value_name = "N", default_value = "3", requires = "screenshot")]
+    pub(crate) frames: NonZeroU32,
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+const VIEW_EXAMPLES: &str = "\
+Keys: H in the window lists them. W A S D Q E fly, dragging looks around, the wheel changes speed;
+1 to 9 choose a debug view; Up and Down choose a light, Space plays it alone, M mutes it; O compares
+the view with the oracle. --size is the window's at the beginning; --repeat changes nothing here.
+
+Examples:
+  umbrage view map.glb
+  umbrage view map.glb --debug volumes --select porch_lamp
+      The shadow volume of one lamp
+  umbrage view map.glb --debug wrong --screenshot wrong.png
+      The window with every wrong pixel marked, as a picture
+  xvfb-run umbrage view map.glb --screenshot window.png
+      The same where there is no display";
 
 /// Writes a generated world as a .glb file.
 #[derive(Debug, Args)]

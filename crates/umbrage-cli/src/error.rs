@@ -10,6 +10,7 @@ use umbrage_lab::gpu::GpuError;
 use umbrage_lab::picture::PictureError;
 use umbrage_lab::stage::StageError;
 use umbrage_report::bench::{BaselineError, OtherSettings};
+use umbrage_view::ViewError;
 
 /// The one error of the command line. Wrong options never get here: clap reports them.
 #[derive(Debug, Error)]
@@ -17,7 +18,7 @@ pub(crate) enum CliError {
     /// A scene, light file, option value or output path that cannot be used.
     #[error("{0}")]
     BadInput(String),
-    /// No adapter that satisfies `--adapter`, or one whose device was lost.
+    /// No adapter that satisfies `--adapter`, one whose device was lost, or no display for a window.
     #[error("{0}")]
     NoAdapter(String),
     /// The verb did its work, and what it checks does not hold.
@@ -70,6 +71,18 @@ impl From<GpuError> for CliError {
     fn from(error: GpuError) -> Self {
         match error {
             GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } | GpuError::DeviceLost(_) => {
+                CliError::NoAdapter(error.to_string())
+            }
+            _ => CliError::BadInput(error.to_string()),
+        }
+    }
+}
+
+impl From<ViewError> for CliError {
+    fn from(error: ViewError) -> Self {
+        match error {
+            ViewError::Gpu(error) => error.into(),
+            ViewError::NoWindow(_) | ViewError::Surface(_) => {
                 CliError::NoAdapter(error.to_string())
             }
             _ => CliError::BadInput(error.to_string()),

@@ -1,7 +1,7 @@
 //! The `umbrage` command line: `umbrage <verb> SCENE [options]`.
 //!
 //! Takes arguments, gives an exit code: 0 success, 1 a check failed, 2 bad input or usage,
-//! 3 no usable adapter, or its device was lost. Each verb has its file in `verbs/`.
+//! 3 no usable adapter, no display for a window, or its device was lost. Each verb has its file in `verbs/`.
 #![forbid(unsafe_code)]
 
 mod actor;
@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Verb::Volumes(args) => verbs::volumes::run(&args),
         Verb::Bench(args) => verbs::bench::run(&args),
         Verb::Stress(args) => verbs::stress::run(&args),
+        Verb::View(args) => verbs::view::run(*args),
         Verb::Gen(args) => verbs::generate::run(&args),
     };
     match done {

@@ -111,6 +111,19 @@ impl RenderTotals {
     }
 }
 
+/// `view`, once the window is closed.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct ViewReport {
+    pub(crate) scene: String,
+    pub(crate) method: String,
+    pub(crate) adapter: String,
+    /// Width and height of the last frame.
+    pub(crate) size: [u32; 2],
+    pub(crate) frames: u64,
+    /// The last frame, panels apart.
+    pub(crate) frame_ms: f64,
+}
+
 /// `inspect`.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct InspectReport {

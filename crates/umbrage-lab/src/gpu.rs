@@ -119,8 +119,8 @@ fn remedy(choice: &AdapterChoice, found: &[String]) -> String {
     }
 }
 
-/// A device with what it can do.
-#[derive(Debug)]
+/// A device with what it can do; clones are the same device.
+#[derive(Clone, Debug)]
 pub struct Gpu {
     /// The device.
     pub device: wgpu::Device,
@@ -223,6 +223,18 @@ impl Gpu {
         Self::open_limited(choice, |_| ())
     }
 
+    /// As [`Gpu::open`], among the adapters of `instance` that can present to `surface`; with what
+    /// that surface takes.
+    pub fn open_for(
+        instance: &wgpu::Instance,
+        surface: &wgpu::Surface<'_>,
+        choice: &AdapterChoice,
+    ) -> Result<(Self, wgpu::SurfaceCapabilities), GpuError> {
+        let adapter = adapter(instance, Some(surface), choice)?;
+        let capabilities = surface.get_capabilities(&adapter);
+        Ok((Self::of(&adapter, |_| ())?, capabilities))
+    }
+
     /// As [`Gpu::open`], with limits that `lower` may lower: what a smaller device would do.
     pub fn open_limited(
         choice: &AdapterChoice,
@@ -234,31 +246,13 @@ impl Gpu {
             flags: wgpu::InstanceFlags::from_build_config(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
-        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-        let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
-        let rank = |a: &wgpu::Adapter| match a.get_info().device_type {
-            wgpu::DeviceType::DiscreteGpu => 0,
-            wgpu::DeviceType::IntegratedGpu => 1,
-            wgpu::DeviceType::VirtualGpu => 2,
-            wgpu::DeviceType::Cpu => 3,
-            wgpu::DeviceType::Other => 4,
-        };
-        adapters.sort_by_key(rank);
-        let adapter = adapters
-            .into_iter()
-            .find(|a| match choice {
-                AdapterChoice::Auto => true,
-                AdapterChoice::Cpu => a.get_info().device_type == wgpu::DeviceType::Cpu,
-                AdapterChoice::Name(name) => a
-                    .get_info()
-                    .name
-                    .to_lowercase()
-                    .contains(&name.to_lowercase()),
-            })
-            .ok_or_else(|| GpuError::NoAdapter {
-                choice: choice.clone(),
-                found: names,
-            })?;
+        Self::of(&adapter(&instance, None, choice)?, lower)
+    }
+
+    fn of(
+        adapter: &wgpu::Adapter,
+        lower: impl FnOnce(&mut wgpu::Limits),
+    ) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let wanted = wgpu::Features::DEPTH_CLIP_CONTROL
             | wgpu::Features::DEPTH32FLOAT_STENCIL8
@@ -318,4 +312,38 @@ fn on_error(exhausted: &Mutex<Option<String>>, error: &wgpu::Error) {
             panic!("{error}");
         }
     }
+}
+
+/// The best of an instance's adapters that fit.
+fn adapter(
+    instance: &wgpu::Instance,
+    surface: Option<&wgpu::Surface<'_>>,
+    choice: &AdapterChoice,
+) -> Result<wgpu::Adapter, GpuError> {
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.retain(|a| surface.is_none_or(|surface| a.is_surface_supported(surface)));
+    let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+    let rank = |a: &wgpu::Adapter| match a.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        wgpu::DeviceType::Other => 4,
+    };
+    adapters.sort_by_key(rank);
+    adapters
+        .into_iter()
+        .find(|a| match choice {
+            AdapterChoice::Auto => true,
+            AdapterChoice::Cpu => a.get_info().device_type == wgpu::DeviceType::Cpu,
+            AdapterChoice::Name(name) => a
+                .get_info()
+                .name
+                .to_lowercase()
+                .contains(&name.to_lowercase()),
+        })
+        .ok_or_else(|| GpuError::NoAdapter {
+            choice: choice.clone(),
+            found: names,
+        })
 }

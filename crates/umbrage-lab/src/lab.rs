@@ -2,8 +2,6 @@
 
 use std::time::Instant;
 
-use glam::Vec3;
-use half::f16;
 use umbrage_core::frame::bounds::light_rect;
 use umbrage_core::frame::{FramePlan, LightPath, PathRule, PlanOptions, SkipReason};
 use umbrage_core::volume::{LayerLimit, VolumeBuilder, Volumes};
@@ -19,21 +17,14 @@ use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::LightDraw;
 use crate::picture::Lit;
 use crate::readback::read_texture;
+use crate::rendering::Rendering;
 use crate::run::{Run, read_calls};
 use crate::stage::{Stage, StageLight};
 use crate::technique::{Overflow, TechniqueReport, technique};
-use crate::timer::{StageTimes, Timer, medians, ms_since};
+use crate::timer::{StageTimes, medians, ms_since};
 
 use crate::method::Counting;
 pub use crate::method::Method;
-
-/// Frames of one view in the drawing.
-#[derive(Debug)]
-struct Rendering {
-    run: Run,
-    hdr: wgpu::Texture,
-    timer: Option<Timer>,
-}
 
 /// A device, a stage and what is needed to draw the one on the other.
 #[derive(Debug)]
@@ -45,6 +36,9 @@ pub struct Lab {
     pub application: Application,
     /// Layers that the stencil is taken to hold; masks of other kinds have none in parts.
     pub layers: LayerLimit,
+    /// One flag a light: true if frames leave it out, though its volume is built and kept. Empty:
+    /// none.
+    pub muted: Vec<bool>,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -61,7 +55,7 @@ pub struct Lab {
     pub held: TechniqueReport,
     builder: VolumeBuilder,
     pub(crate) lights: Vec<Light>,
-    method: Method,
+    pub(crate) method: Method,
 }
 
 impl Lab {
@@ -72,6 +66,7 @@ impl Lab {
             culls: Culls::EVERY,
             application: Application::default(),
             layers: LayerLimit::STENCIL,
+            muted: Vec::new(),
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -107,6 +102,7 @@ impl Lab {
         let Some(recipe) = method.recipe() else {
             self.volumes = Volumes::empty(self.lights.len());
             self.plan.unshadowed(&self.lights, view);
+            self.mute();
             self.times.volumes = ms_since(start);
             self.times.plan = 0.0;
             return;
@@ -133,7 +129,15 @@ impl Lab {
         };
         self.plan
             .make(&stage.world, &self.lights, &self.volumes, view, &options);
+        self.mute();
         self.times.plan = ms_since(start);
+    }
+
+    fn mute(&mut self) {
+        let lights = self.plan.lights.iter_mut().zip(&self.muted);
+        for (light, _) in lights.filter(|(_, muted)| **muted) {
+            light.path = LightPath::Skipped(SkipReason::Muted);
+        }
     }
 
     pub(crate) fn run(
@@ -232,20 +236,9 @@ impl Lab {
         Ok(self.finish(&rendering)?)
     }
 
-    fn begin(&mut self, stage: &Stage, view: &View, method: Method) -> Result<Rendering, GpuError> {
-        self.frames.clear();
-        self.method = method;
-        let draw = LightDraw::Shade;
-        let usage = wgpu::TextureUsages::COPY_SRC;
-        Ok(Rendering {
-            run: self.run(stage, view, method, draw, VolumeColor::None)?,
-            hdr: texture(&self.gpu, "light", view.size, draw.format(), usage),
-            timer: Timer::new(&self.gpu),
-        })
-    }
-
-    /// Draws a frame that began at `start`, and adds its times to `frames`.
-    fn draw(
+    /// Draws a frame that began at `start`, and adds its times to `frames`. The view has the size
+    /// that `rendering` was begun with.
+    pub fn draw(
         &mut self,
         rendering: &mut Rendering,
         stage: &Stage,
@@ -325,34 +318,16 @@ impl Lab {
 
     /// The last picture; `times` become medians over the frames after the first.
     fn finish(&mut self, rendering: &Rendering) -> Result<Lit, GpuError> {
-        let Rendering { run, hdr, .. } = rendering;
+        let run = &rendering.run;
         let timed = usize::from(self.frames.len() > 1);
         self.times = medians(&self.frames[timed.min(self.frames.len())..]);
         if let Some(first) = self.frames.first() {
             self.times.volumes_first = first.volumes;
             self.times.frame_first = first.frame;
         }
-        self.calls = read_calls(&self.gpu, run)?;
         self.held = run.technique.report();
-        let light = read_texture(&self.gpu, hdr)?;
-        Ok(Lit {
-            size: run.targets.size,
-            light: light
-                .chunks_exact(8)
-                .map(|t| {
-                    let channel = |i| f16::from_le_bytes([t[i], t[i + 1]]).to_f32();
-                    Vec3::new(channel(0), channel(2), channel(4))
-                })
-                .collect(),
-            albedo: read_texture(&self.gpu, &run.targets.albedo)?
-                .chunks_exact(4)
-                .map(|t| [t[0], t[1], t[2]])
-                .collect(),
-            distance: read_texture(&self.gpu, &run.targets.distance)?
-                .chunks_exact(4)
-                .map(|t| f32::from_le_bytes([t[0], t[1], t[2], t[3]]))
-                .collect(),
-        })
+        self.read_calls(rendering)?;
+        self.lit(rendering)
     }
 
     /// Renders the shadow mask of what `volumes` and `plan` hold: the same volume draws and the

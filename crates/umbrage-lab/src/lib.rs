@@ -15,6 +15,7 @@ pub mod light_pass;
 pub mod method;
 pub mod picture;
 pub mod readback;
+pub mod rendering;
 pub mod run;
 pub mod saved_world;
 pub mod seeded_lights;

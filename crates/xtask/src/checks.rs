@@ -1,7 +1,7 @@
 //! `cargo xtask lint` and `cargo xtask test`: the one list of what must hold.
 
 use crate::steps::{Steps, cargo};
-use crate::{Stop, browser, driver};
+use crate::{Stop, browser, display, driver};
 
 /// Formatting and clippy.
 pub(crate) fn lint() -> Result<(), Stop> {
@@ -12,6 +12,7 @@ pub(crate) fn lint() -> Result<(), Stop> {
 pub(crate) fn test() -> Result<(), Stop> {
     driver::ensure()?;
     browser::ensure();
+    display::ensure();
     summarised(|steps| {
         run_lint(steps)?;
         steps.cargo_test("test, validators on", &["--workspace"])?;

@@ -8,6 +8,7 @@ mod apt;
 mod browser;
 mod checks;
 mod demo;
+mod display;
 mod driver;
 mod steps;
 
@@ -21,8 +22,8 @@ cargo xtask <task>
           none (Debian, Ubuntu), builds the release binary and renders the bundled world with
           all its lights to target/demo/.
   test    Everything that CI runs, in its order, stopping at the first failure: driver,
-          browser (installed likewise; without one the tests of HTML reports and of a second
-          Vulkan driver are skipped),
+          browser and display (installed likewise; without them the tests of HTML reports, of a
+          second Vulkan driver and of windows are skipped),
           formatting, clippy, tests with every validator on (dev profile), every bench once,
           documentation.
   lint    The quick half of `test`: formatting and clippy.

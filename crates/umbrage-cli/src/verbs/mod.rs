@@ -7,4 +7,5 @@ pub(crate) mod generate;
 pub(crate) mod inspect;
 pub(crate) mod render;
 pub(crate) mod stress;
+pub(crate) mod view;
 pub(crate) mod volumes;

@@ -81,6 +81,12 @@ pub(crate) fn assert_keys(value: &Value, keys: &str) {
 
 /// Width and height of a PNG that decodes whole.
 pub(crate) fn png_size(path: &str) -> (u32, u32) {
+    let ([width, height], _) = png_rgb(path);
+    (width, height)
+}
+
+/// Size and pixels of a picture in red, green and blue, which shows something.
+pub(crate) fn png_rgb(path: &str) -> ([u32; 2], Vec<[u8; 3]>) {
     let bytes = std::fs::read(path).expect("a picture");
     assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
@@ -88,9 +94,11 @@ pub(crate) fn png_size(path: &str) -> (u32, u32) {
         .expect("a PNG");
     let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut pixels).expect("whole image data");
+    assert_eq!(info.color_type, png::ColorType::Rgb, "{path}");
     assert!(
         pixels.iter().any(|&p| p != pixels[0]),
         "{path} shows nothing"
     );
-    (info.width, info.height)
+    let rgb = pixels.chunks_exact(3).map(|p| [p[0], p[1], p[2]]);
+    ([info.width, info.height], rgb.collect())
 }

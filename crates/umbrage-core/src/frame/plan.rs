@@ -88,6 +88,8 @@ pub enum SkipReason {
     NothingInRange,
     /// Nobody wanted its volume built.
     NotBuilt,
+    /// Its host left it out of this frame.
+    Muted,
     /// No visible surface is within its range: found out on the GPU, from the depth buffer.
     NoVisibleReceiver,
 }
@@ -117,6 +119,7 @@ impl LightPath {
             LightPath::Skipped(SkipReason::OutsideView) => "its range is outside the view",
             LightPath::Skipped(SkipReason::NothingInRange) => "no triangle is in its range",
             LightPath::Skipped(SkipReason::NotBuilt) => "its volume was not built",
+            LightPath::Skipped(SkipReason::Muted) => "it is muted",
             LightPath::Skipped(SkipReason::NoVisibleReceiver) => {
                 "no visible surface is in its range"
             }
