@@ -279,3 +279,33 @@ fn divided_and_whole_lights_share_a_frame() {
     assert_eq!(numbers, Vec::from_iter(5..5 + numbers.len() as u32));
     assert!(!numbers.is_empty());
 }
+
+/// A divided light that is left unshadowed lights all it reaches; those about it keep their parts, and
+/// their shadows to the bit.
+#[test]
+fn divided_lights_may_be_left_unshadowed() {
+    let site = stack(300, 0.0);
+    let aside = |x: f32| point(Vec3::new(x, 6.0, 1.0), 30.0);
+    let lights = staged([lamp(), aside(-9.0), sun()]);
+    let view = &views(&site)[0];
+    let mask = |unshadowed: Vec<usize>| {
+        let mut lab = lab();
+        lab.unshadowed = unshadowed;
+        lab.prepare(&site.stage, &lights, view, Method::Counter);
+        let mask = lab.mask(&site.stage, &lights, view).expect("a mask");
+        lab.unshadowed.clear();
+        mask
+    };
+    let (whole, left) = (mask(Vec::new()), mask(vec![0]));
+    let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+    let mut brightened = 0;
+    for (x, y) in pixels {
+        for light in [1, 2] {
+            let [before, after] = [&whole, &left].map(|mask| mask.get(x, y, light));
+            assert_eq!(before, after, "light {light} at {x}, {y}");
+        }
+        assert!(left.get(x, y, 0) || !whole.get(x, y, 0), "{x}, {y} is darker");
+        brightened += u32::from(left.get(x, y, 0) && !whole.get(x, y, 0));
+    }
+    assert!(brightened > 100, "{brightened} pixels");
+}

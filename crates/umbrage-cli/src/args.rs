@@ -45,6 +45,7 @@ pub(crate) enum Verb {
     Check(CheckArgs),
     Volumes(VolumesArgs),
     Bench(BenchArgs),
+    Profile(ProfileArgs),
     Stress(StressArgs),
     // Boxed: it is far larger than the others.
     View(Box<WindowArgs>),
@@ -281,6 +282,38 @@ Examples:
   umbrage bench 'gen:city?triangles=1e4' 'gen:city?triangles=1e5' --size 640x360 --size 1280x720 -o scaling
       Rows that differ in one thing only become a plot of time over it
   umbrage bench map.glb --baseline report/report.json --ratio 1.15";
+
+/// Says what each light costs, why, and what would make it cheaper.
+#[derive(Debug, Args)]
+#[command(after_help = PROFILE_EXAMPLES)]
+pub(crate) struct ProfileArgs {
+    /// A .glb, .gltf or .obj file, or gen:NAME?key=value&...
+    pub(crate) scene: String,
+    /// Write profile.json, trace.json (for Perfetto or chrome://tracing) and index.html with the
+    /// tables, a plan of the scene and the costliest lights into this folder
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+    /// Apply each piece of advice in memory, and measure what it saves
+    #[arg(long)]
+    pub(crate) verify: bool,
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+const PROFILE_EXAMPLES: &str = "\
+The ordinary frame is timed first, undisturbed. Then each light is built on one thread with a clock
+between the stages, and drawn in passes of its own with timestamps at their bounds; --repeat is the
+number of rounds, and the least of them counts. What the lights' figures leave of the frame is shown
+as a remainder. Without timestamps there are no GPU figures.
+
+Advice holds for the view at hand: a light may show elsewhere.
+
+Examples:
+  umbrage profile map.glb -o profile
+      Then open profile/index.html
+  umbrage profile map.glb --camera 3 --verify -o profile
+      Predicted and measured savings side by side
+  umbrage profile map.glb --json - | jq '.lights | sort_by(-.frame_us)[:5] | .[].name'";
 
 /// Tries to break volumes and masks with seeded cases of hostile geometry, without a scene.
 #[derive(Debug, Args)]

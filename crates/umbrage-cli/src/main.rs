@@ -21,6 +21,7 @@ use clap::Parser;
 use args::{Cli, Verb};
 
 fn main() -> ExitCode {
+    umbrage_lab::spans::start();
     // A usage error or --help ends here: clap prints it and exits with 2 or 0.
     let done = match Cli::parse().verb {
         Verb::Render(args) => verbs::render::run(&args),
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Verb::Check(args) => verbs::check::run(&args),
         Verb::Volumes(args) => verbs::volumes::run(&args),
         Verb::Bench(args) => verbs::bench::run(&args),
+        Verb::Profile(args) => verbs::profile::run(&args),
         Verb::Stress(args) => verbs::stress::run(&args),
         Verb::View(args) => verbs::view::run(*args),
         Verb::Gen(args) => verbs::generate::run(&args),

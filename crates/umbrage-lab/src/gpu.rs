@@ -80,6 +80,9 @@ pub enum GpuError {
         /// What fits.
         limit: usize,
     },
+    /// No thread to work on.
+    #[error("a thread could not be started: {0}")]
+    Threads(String),
     /// Reading results back failed.
     #[error("a frame could not be read back: {0}")]
     Readback(String),

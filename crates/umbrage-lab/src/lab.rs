@@ -19,6 +19,7 @@ use crate::picture::Lit;
 use crate::readback::read_texture;
 use crate::rendering::Rendering;
 use crate::run::{Run, read_calls};
+use crate::spans::{frame_mark, span};
 use crate::stage::{Stage, StageLight};
 use crate::technique::{Overflow, TechniqueReport, technique};
 use crate::timer::{StageTimes, medians, ms_since};
@@ -39,6 +40,8 @@ pub struct Lab {
     /// One flag a light: true if frames leave it out, though its volume is built and kept. Empty:
     /// none.
     pub muted: Vec<bool>,
+    /// Numbers of lights whose volumes frames leave out: all that they reach is lit.
+    pub unshadowed: Vec<usize>,
     /// Silhouettes and caps of the lights last given.
     pub volumes: Volumes,
     /// How the last frame drew each light.
@@ -53,7 +56,7 @@ pub struct Lab {
     pub frames: Vec<StageTimes>,
     /// What the technique of the last frames holds.
     pub held: TechniqueReport,
-    builder: VolumeBuilder,
+    pub(crate) builder: VolumeBuilder,
     pub(crate) lights: Vec<Light>,
     pub(crate) method: Method,
 }
@@ -67,6 +70,7 @@ impl Lab {
             application: Application::default(),
             layers: LayerLimit::STENCIL,
             muted: Vec::new(),
+            unshadowed: Vec::new(),
             volumes: Volumes::default(),
             plan: FramePlan::default(),
             calls: Vec::new(),
@@ -96,6 +100,7 @@ impl Lab {
     /// `plan` then; a test may change them in between.
     pub fn prepare(&mut self, stage: &Stage, lights: &[StageLight], view: &View, method: Method) {
         let start = Instant::now();
+        let building = span("volumes");
         self.calls.clear();
         self.lights = lights.iter().map(|l| l.light).collect();
         self.method = method;
@@ -119,6 +124,8 @@ impl Lab {
         self.builder
             .settle(&stage.world, &self.lights, in_view, &mut self.volumes);
         self.times.volumes = ms_since(start);
+        building.end();
+        let _span = span("plan");
         let start = Instant::now();
         let mut options = PlanOptions::default();
         options.culls = culls;
@@ -130,6 +137,9 @@ impl Lab {
         self.plan
             .make(&stage.world, &self.lights, &self.volumes, view, &options);
         self.mute();
+        for &light in &self.unshadowed {
+            self.plan.leave_unshadowed(light);
+        }
         self.times.plan = ms_since(start);
     }
 
@@ -249,8 +259,12 @@ impl Lab {
         let Rendering { run, hdr, timer } = rendering;
         self.prepare(stage, lights, view, run.method);
         let upload = Instant::now();
-        self.upload(run, stage, lights, view)?;
+        {
+            let _span = span("upload");
+            self.upload(run, stage, lights, view)?;
+        }
         self.times.upload = ms_since(upload);
+        let recording = span("record");
         let record = Instant::now();
         let descriptor = wgpu::CommandEncoderDescriptor {
             label: Some("frame"),
@@ -268,10 +282,14 @@ impl Lab {
         }
         self.gpu.queue.submit([encoder.finish()]);
         self.times.record = ms_since(record);
+        recording.end();
+        let waiting = span("wait for the GPU");
         let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         done.map_err(|e| self.gpu.lost_or(GpuError::Readback(e.to_string())))?;
         self.gpu.check_alive()?;
         self.times.frame = ms_since(start);
+        waiting.end();
+        frame_mark();
         if let Some(timer) = timer {
             let [surface, receivers, lights] = timer.read(&self.gpu)?;
             self.times.gpu_surface = surface;

@@ -76,6 +76,9 @@ pub enum LightDraw {
     Reach,
     /// One for each light drawn.
     One,
+    /// One to green for each light drawn, and where its light shows one to blue, and to alpha what
+    /// part of its range is needed for that.
+    Count,
     /// Nothing but the stencil.
     Nothing,
 }
@@ -95,6 +98,7 @@ impl LightDraw {
             LightDraw::Ambient => "ambient",
             LightDraw::Mark => "mark",
             LightDraw::Reach => "reach",
+            LightDraw::Count => "count",
             LightDraw::One | LightDraw::Nothing => "one",
         }
     }

@@ -48,7 +48,11 @@ impl Lit {
 
     /// 8-bit sRGB with the scene's own exposure.
     pub fn to_rgb8(&self) -> Vec<u8> {
-        let exposure = self.exposure();
+        self.exposed_rgb8(self.exposure())
+    }
+
+    /// 8-bit sRGB with the exposure of another picture, to be compared with that.
+    pub fn exposed_rgb8(&self, exposure: f32) -> Vec<u8> {
         self.light
             .iter()
             .zip(&self.albedo)
@@ -104,13 +108,38 @@ pub fn write_png(path: &Path, [width, height]: [u32; 2], rgb8: &[u8]) -> Result<
         path: path.into(),
         message,
     };
+    let bytes = png_file([width, height], png::ColorType::Rgb, rgb8).map_err(fail)?;
+    whole(path, |file| file.write_all(&bytes)).map_err(|e| fail(e.to_string()))
+}
+
+/// 8-bit rows of four channels, the last of them alpha, as the bytes of a PNG file.
+///
+/// # Errors
+/// What the encoder says: of a picture without pixels, or of too few bytes.
+pub fn rgba_png(size: [u32; 2], rgba8: &[u8]) -> Result<Vec<u8>, String> {
+    png_file(size, png::ColorType::Rgba, rgba8)
+}
+
+/// 8-bit RGB rows as the bytes of a PNG file.
+///
+/// # Errors
+/// As [`rgba_png`].
+pub fn rgb_png(size: [u32; 2], rgb8: &[u8]) -> Result<Vec<u8>, String> {
+    png_file(size, png::ColorType::Rgb, rgb8)
+}
+
+fn png_file(
+    [width, height]: [u32; 2],
+    color: png::ColorType,
+    pixels: &[u8],
+) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(color);
     encoder.set_depth(png::BitDepth::Eight);
     encoder
         .write_header()
-        .and_then(|mut writer| writer.write_image_data(rgb8))
-        .map_err(|e| fail(e.to_string()))?;
-    whole(path, |file| file.write_all(&bytes)).map_err(|e| fail(e.to_string()))
+        .and_then(|mut writer| writer.write_image_data(pixels))
+        .map_err(|e| e.to_string())?;
+    Ok(bytes)
 }

@@ -1,7 +1,5 @@
 //! Frames of one view that stay on the GPU: what they leave there, and what each light took.
 
-use glam::Vec3;
-use half::f16;
 use umbrage_core::View;
 use umbrage_core::frame::LightPath;
 use umbrage_wgpu::VolumeColor;
@@ -11,8 +9,7 @@ use crate::gpu::GpuError;
 use crate::lab::{Lab, Method};
 use crate::light_pass::{HDR, LightDraw};
 use crate::picture::Lit;
-use crate::readback::read_texture;
-use crate::run::{Run, read_calls};
+use crate::run::{Run, read_calls, read_lit};
 use crate::stage::{Stage, StageLight};
 use crate::timer::{Timer, median};
 
@@ -58,25 +55,7 @@ impl Lab {
     /// The last frame's picture.
     pub fn lit(&self, rendering: &Rendering) -> Result<Lit, GpuError> {
         let Rendering { run, hdr, .. } = rendering;
-        let light = read_texture(self.gpu(), hdr)?;
-        Ok(Lit {
-            size: run.targets.size,
-            light: light
-                .chunks_exact(8)
-                .map(|t| {
-                    let channel = |i| f16::from_le_bytes([t[i], t[i + 1]]).to_f32();
-                    Vec3::new(channel(0), channel(2), channel(4))
-                })
-                .collect(),
-            albedo: read_texture(self.gpu(), &run.targets.albedo)?
-                .chunks_exact(4)
-                .map(|t| [t[0], t[1], t[2]])
-                .collect(),
-            distance: read_texture(self.gpu(), &run.targets.distance)?
-                .chunks_exact(4)
-                .map(|t| f32::from_le_bytes([t[0], t[1], t[2], t[3]]))
-                .collect(),
-        })
+        read_lit(self.gpu(), run, hdr)
     }
 
     /// Finds out what the GPU drew of each light in the last frame: [`Lab::path`] and

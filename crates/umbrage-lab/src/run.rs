@@ -1,13 +1,16 @@
 //! What a frame is drawn with, kept from frame to frame: targets, passes, the shadow renderer, the
 //! technique.
 
+use glam::Vec3;
+use half::f16;
 use umbrage_wgpu::{Frame, LightCalls, ShadowRenderer};
 
 use crate::gbuffer::{GBufferPass, Targets, depth_only, whole};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::LightDraw;
 use crate::method::Method;
-use crate::readback::{read_items, record_copy};
+use crate::picture::Lit;
+use crate::readback::{read_items, read_texture, record_copy};
 use crate::stage::{Stage, StageLight};
 use crate::technique::{Given, Technique};
 use crate::timer::Timer;
@@ -120,6 +123,29 @@ fn calls_of(gpu: &Gpu, shadows: &ShadowRenderer) -> Result<Vec<LightCalls>, GpuE
     Ok(all)
 }
 
+/// The picture whose light is in `hdr`.
+pub(crate) fn read_lit(gpu: &Gpu, run: &Run, hdr: &wgpu::Texture) -> Result<Lit, GpuError> {
+    let light = read_texture(gpu, hdr)?;
+    Ok(Lit {
+        size: run.targets.size,
+        light: light
+            .chunks_exact(8)
+            .map(|t| {
+                let channel = |i| f16::from_le_bytes([t[i], t[i + 1]]).to_f32();
+                Vec3::new(channel(0), channel(2), channel(4))
+            })
+            .collect(),
+        albedo: read_texture(gpu, &run.targets.albedo)?
+            .chunks_exact(4)
+            .map(|t| [t[0], t[1], t[2]])
+            .collect(),
+        distance: read_texture(gpu, &run.targets.distance)?
+            .chunks_exact(4)
+            .map(|t| f32::from_le_bytes([t[0], t[1], t[2], t[3]]))
+            .collect(),
+    })
+}
+
 /// A target that no light was added to yet.
 pub(crate) const FROM_DARK: wgpu::LoadOp<wgpu::Color> =
     wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
@@ -143,6 +169,18 @@ pub(crate) fn stencil_pass<'e>(
     load: wgpu::LoadOp<wgpu::Color>,
     stencil: wgpu::LoadOp<u32>,
 ) -> wgpu::RenderPass<'e> {
+    timed_pass(encoder, targets, color, load, stencil, None)
+}
+
+/// The same with timestamps at its begin and end.
+pub(crate) fn timed_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    targets: &Targets,
+    color: &wgpu::Texture,
+    load: wgpu::LoadOp<wgpu::Color>,
+    stencil: wgpu::LoadOp<u32>,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("lights"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -162,6 +200,7 @@ pub(crate) fn stencil_pass<'e>(
                 store: wgpu::StoreOp::Store,
             }),
         }),
+        timestamp_writes,
         ..wgpu::RenderPassDescriptor::default()
     })
 }

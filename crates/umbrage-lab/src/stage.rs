@@ -191,6 +191,31 @@ impl Stage {
         }
     }
 
+    /// Lets the triangles cast by other rules, one a triangle of `mesh`, and gives those there were.
+    /// The world is built again.
+    ///
+    /// # Errors
+    /// As [`Stage::new`]; the stage then is as it was.
+    pub fn recast(&mut self, casting: Vec<Casting>) -> Result<Vec<Casting>, StageError> {
+        let old = std::mem::replace(&mut self.mesh.casting, casting);
+        let [vertices, fixed] = fixed_part(&self.scene, &self.soup);
+        let built = World::build(&first(&self.mesh, vertices, fixed))
+            .map_err(|error| StageError::new(&self.scene, None, error.into()));
+        let inserted = built.and_then(|mut world| {
+            let (scene, soup, mesh) = (&self.scene, &self.soup, &self.mesh);
+            let actors = actors::insert(scene, soup, mesh, fixed, &mut world)?;
+            Ok((world, actors))
+        });
+        match inserted {
+            Ok((world, actors)) => (self.world, self.actors) = (world, actors),
+            Err(error) => {
+                self.mesh.casting = old;
+                return Err(error);
+            }
+        }
+        Ok(old)
+    }
+
     /// A world point relative to the world origin.
     pub fn local(&self, p: DVec3) -> DVec3 {
         p - self.soup.origin

@@ -39,6 +39,12 @@ pub(crate) fn count_or_dash(value: Option<u64>) -> String {
     value.map_or_else(|| NONE.to_owned(), grouped)
 }
 
+/// `1 row`, `2 rows`.
+pub(crate) fn plural(count: usize, noun: &str) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{} {noun}{s}", grouped(count as u64))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -23,7 +23,8 @@
 //! assert!(bench::terminal(&report).contains("2.00 x"));
 //! ```
 //!
-//! The rooms: [`mod@bench`] knows what a benchmark measures. Below it, of use to any report:
+//! The rooms: [`mod@bench`] knows what a benchmark measures, [`mod@profile`] what each light of a frame
+//! costs. Below them, of use to any report:
 //! [`page`] (the HTML shell, style and script), [`sortable`] (HTML tables), [`plot`] (SVG) and
 //! [`Table`] (terminal).
 #![forbid(unsafe_code)]
@@ -32,6 +33,7 @@ pub mod bench;
 mod figure;
 pub mod page;
 pub mod plot;
+pub mod profile;
 pub mod sortable;
 mod table;
 

@@ -35,6 +35,18 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
+/// A command line with a button that copies it; nothing where there is none.
+pub(crate) fn command(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<div class=\"command\"><pre tabindex=\"0\"><code>{}</code></pre>\
+         <button type=\"button\" id=\"copy\">Copy</button></div>",
+        escape(text)
+    )
+}
+
 /// Bytes as a `data:` URI (RFC 2397, base64 of RFC 4648).
 pub fn data_uri(media_type: &str, bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -60,10 +60,27 @@ pub struct Row {
     pub cells: Vec<Cell>,
 }
 
+/// The table in a box that scrolls where it is too wide, below one in which words can be typed that
+/// rows must have to be shown. `id` is unique in the page.
+pub fn filtered_table(id: &str, caption: &str, columns: &[Column], rows: &[Row]) -> String {
+    let id = escape(id);
+    format!(
+        "<p class=\"filtering\"><label for=\"{id}-filter\">Show rows with</label>\
+         <input class=\"filter\" id=\"{id}-filter\" data-for=\"{id}\" type=\"search\">\
+         <output></output></p>{}",
+        named_table(&format!(" id=\"{id}\""), caption, columns, rows)
+    )
+}
+
 /// The table in a box that scrolls where it is too wide.
 pub fn table(caption: &str, columns: &[Column], rows: &[Row]) -> String {
+    named_table("", caption, columns, rows)
+}
+
+fn named_table(id: &str, caption: &str, columns: &[Column], rows: &[Row]) -> String {
     let mut html = format!(
-        "<div class=\"scroll\"><table class=\"sortable\"><caption>{}</caption><thead><tr>",
+        "<div class=\"scroll{}\"><table class=\"sortable\"{id}><caption>{}</caption><thead><tr>",
+        if id.is_empty() { "" } else { " tall" },
         escape(caption)
     );
     for column in columns {

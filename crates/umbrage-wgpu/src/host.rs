@@ -60,7 +60,7 @@ pub enum VolumeColor {
     /// Nothing.
     #[default]
     None,
-    /// One a fragment that passes the depth test: overdraw.
+    /// One to red a fragment that passes the depth test: overdraw.
     Fragments,
     /// One a front face and minus one a back face that passes the depth test: on the z-pass path,
     /// with the eye count added, the casters between the surface and the light, if no cull left any

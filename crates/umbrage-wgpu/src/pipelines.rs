@@ -200,7 +200,7 @@ fn targets(
     };
     let (entry_point, visible) = match volume_color {
         VolumeColor::None => ("nothing", None),
-        VolumeColor::Fragments => ("one", Some(add)),
+        VolumeColor::Fragments => ("one_in_red", Some(add)),
         VolumeColor::Layers => ("layer", Some(add)),
     };
     let target = |(number, format): (usize, &Option<TextureFormat>)| {

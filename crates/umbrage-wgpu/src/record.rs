@@ -41,39 +41,77 @@ impl ViewShadows {
         lights: Range<usize>,
         mut draw_light: impl FnMut(&mut RenderPass<'_>, usize, &LightPlan),
     ) {
+        let end = lights.end.min(plan.lights.len());
+        for number in lights.start.min(end)..end {
+            self.record_volume(pass, pipelines, plan, number);
+            self.record_light(pass, pipelines, plan, number, &mut draw_light);
+        }
+    }
+
+    /// The first half of [`ViewShadows::record`] for one light: its volume, counted in the stencil.
+    /// The second half, which may come in a later pass that loads the stencil, is
+    /// [`ViewShadows::record_light`]; no other light may be recorded between the two.
+    pub fn record_volume(
+        &self,
+        pass: &mut RenderPass<'_>,
+        pipelines: &VolumePipelines,
+        plan: &FramePlan,
+        number: usize,
+    ) {
+        let Some(light) = self.begin(pass, plan, number) else {
+            return;
+        };
+        if light.parts.is_empty() {
+            let counters = &pipelines.whole;
+            self.draw_volume(pass, number, light, counters.sides(), counters.caps());
+        } else {
+            self.draw_parts(pass, pipelines, number, light);
+        }
+    }
+
+    /// The second half: `draw_light`, as for [`ViewShadows::record`], and what brings the stencil
+    /// back to zero.
+    pub fn record_light(
+        &self,
+        pass: &mut RenderPass<'_>,
+        pipelines: &VolumePipelines,
+        plan: &FramePlan,
+        number: usize,
+        draw_light: impl FnOnce(&mut RenderPass<'_>, usize, &LightPlan),
+    ) {
         let (Some(volumes), Some(world)) = (&self.volumes, self.world_bind_group()) else {
             return;
         };
-        let [x, y] = self.origin;
-        let end = lights.end.min(plan.lights.len());
-        let of_range = lights.start.min(end)..end;
-        for (number, light) in of_range.clone().zip(&plan.lights[of_range]) {
-            if light.is_skipped() || light.scissor.is_empty() {
-                continue;
-            }
-            let s = light.scissor;
-            pass.set_scissor_rect(x + s.x, y + s.y, s.width, s.height);
-            let counted = match light.parts.is_empty() {
-                true => {
-                    let counters = &pipelines.whole;
-                    self.draw_volume(pass, number, light, counters.sides(), counters.caps())
-                }
-                false => {
-                    self.draw_parts(pass, pipelines, number, light);
-                    true
-                }
-            };
-            pass.set_stencil_reference(u32::from(light.stencil_reference));
-            draw_light(pass, number, light);
-            if let Some(calls) = self.calls().filter(|_| counted) {
-                pass.set_pipeline(&pipelines.clean);
-                pass.set_bind_group(0, &volumes.windows[1][0], &[]);
-                pass.set_bind_group(1, world, &[]);
-                for calls in calls {
-                    pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
-                }
+        let Some(light) = self.begin(pass, plan, number) else {
+            return;
+        };
+        pass.set_stencil_reference(u32::from(light.stencil_reference));
+        draw_light(pass, number, light);
+        if let Some(calls) = self.calls().filter(|_| light.has_volume()) {
+            pass.set_pipeline(&pipelines.clean);
+            pass.set_bind_group(0, &volumes.windows[1][0], &[]);
+            pass.set_bind_group(1, world, &[]);
+            for calls in calls {
+                pass.draw_indirect(calls, number as u64 * LightCalls::SIZE + LightCalls::CLEAN);
             }
         }
+    }
+
+    /// Sets the scissor of a light; `None` if none of it is drawn.
+    fn begin<'a>(
+        &self,
+        pass: &mut RenderPass<'_>,
+        plan: &'a FramePlan,
+        number: usize,
+    ) -> Option<&'a LightPlan> {
+        let light = plan.lights.get(number)?;
+        let s = light.scissor;
+        if light.is_skipped() || s.is_empty() {
+            return None;
+        }
+        let [x, y] = self.origin;
+        pass.set_scissor_rect(x + s.x, y + s.y, s.width, s.height);
+        Some(light)
     }
 
     /// Counts a light's parts in the stencil, one after the other.

@@ -96,6 +96,23 @@ impl ShadowRenderer {
         self.view.record(pass, pipelines, plan, lights, draw_light);
     }
 
+    /// As [`ViewShadows::record_volume`].
+    pub fn record_volume(&self, pass: &mut RenderPass<'_>, plan: &FramePlan, number: usize) {
+        self.view.record_volume(pass, self.shared.pipelines(), plan, number);
+    }
+
+    /// As [`ViewShadows::record_light`].
+    pub fn record_light(
+        &self,
+        pass: &mut RenderPass<'_>,
+        plan: &FramePlan,
+        number: usize,
+        draw_light: impl FnOnce(&mut RenderPass<'_>, usize, &LightPlan),
+    ) {
+        let pipelines = self.shared.pipelines();
+        self.view.record_light(pass, pipelines, plan, number, draw_light);
+    }
+
     /// As [`ViewShadows::draw_light`].
     pub fn draw_light(&self, pass: &mut RenderPass<'_>, light: usize) {
         self.view.draw_light(pass, light);

@@ -30,7 +30,8 @@ use crate::values::NamedCamera;
 
 use interrupt::Interrupt;
 use row::{Judge, Task, measure};
-use settings::{command_line, settings};
+pub(crate) use settings::command_line;
+use settings::settings;
 use verdict::verdict;
 
 /// Measures, writes, compares.

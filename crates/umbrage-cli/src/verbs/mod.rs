@@ -5,6 +5,7 @@ pub(crate) mod check;
 #[path = "gen.rs"] // `gen` is a reserved word
 pub(crate) mod generate;
 pub(crate) mod inspect;
+pub(crate) mod profile;
 pub(crate) mod render;
 pub(crate) mod stress;
 pub(crate) mod view;

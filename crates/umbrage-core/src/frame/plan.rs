@@ -166,6 +166,12 @@ impl LightPlan {
     pub fn is_skipped(&self) -> bool {
         matches!(self.path, LightPath::Skipped(_))
     }
+
+    /// Whether anything of a volume is drawn for it.
+    pub fn has_volume(&self) -> bool {
+        let lists = [&self.quads, &self.caps, &self.reversed_caps];
+        !self.parts.is_empty() || lists.into_iter().any(|list| !list.is_empty())
+    }
 }
 
 impl FramePlan {
@@ -251,6 +257,26 @@ impl FramePlan {
                 caps,
                 reversed_caps,
             });
+        }
+    }
+
+    /// Leaves a light's volume out: every pixel that it reaches is lit.
+    pub fn leave_unshadowed(&mut self, light: usize) {
+        let plan = &mut self.lights[light];
+        if plan.is_skipped() {
+            return;
+        }
+        plan.path = LightPath::ZPass { eye_count: 0 };
+        plan.stencil_reference = 0;
+        for range in [&mut plan.quads, &mut plan.caps, &mut plan.reversed_caps] {
+            range.end = range.start;
+        }
+        let further = std::mem::take(&mut plan.parts).len().saturating_sub(1) as u32;
+        // Numbers of parts follow the order of their lights.
+        for later in &mut self.lights[light + 1..] {
+            for part in later.parts.iter_mut().skip(1) {
+                part.number -= further;
+            }
         }
     }
 

@@ -15,11 +15,12 @@ use rayon::prelude::*;
 use super::cache::{Job, Kept};
 #[cfg(debug_assertions)]
 use super::check_closed;
+use super::clock::{BuildStage, Clock, StageClock};
 use super::construction::{Makes, Marks};
 use super::layers::Layers;
 use super::{
-    Chain, Construction, Crow, HiddenScratch, LayerLimit, LightVolume, Part, Quad, RangePrefix,
-    Volumes, drop_hidden, facing, range_first,
+    BuildTimes, Chain, Construction, Crow, HiddenScratch, LayerLimit, LightVolume, Part, Quad,
+    RangePrefix, Volumes, drop_hidden, facing, range_first,
 };
 use crate::cull::{Cull, Culls};
 use crate::light::Light;
@@ -116,6 +117,43 @@ impl VolumeBuilder {
         self.update(world, lights, wanted, None, volumes)
     }
 
+    /// Builds one light from nothing, as [`VolumeBuilder::settle`] does, on the calling thread and
+    /// for the times alone: the volume is dropped. Nothing is built of a light that is not usable.
+    pub fn time_light(&mut self, world: &World, light: &Light) -> BuildTimes {
+        if !light.is_usable() {
+            return BuildTimes::default();
+        }
+        if self.construction == Construction::Crow {
+            self.crow.update(world);
+        }
+        let mut scratch = lock(&self.scratch).pop().unwrap_or_default();
+        scratch.marks.fit(world, self.construction);
+        if self.chunks.is_empty() {
+            self.chunks.push(Built::default());
+        }
+        let out = &mut self.chunks[0];
+        out.clear();
+        let makes = Makes {
+            construction: self.construction,
+            crow: &self.crow,
+            layers: self.layers,
+        };
+        let hide = self.culls.has(Cull::Hidden) && self.construction == Construction::Counter;
+        let mut clock = StageClock::start();
+        build_one(
+            world,
+            light,
+            None,
+            hide,
+            &makes,
+            &mut scratch,
+            out,
+            &mut clock,
+        );
+        lock(&self.scratch).push(scratch);
+        clock.times
+    }
+
     /// `budget`: casters among which to look for hidden ones; all if there is none.
     fn update(
         &mut self,
@@ -153,7 +191,7 @@ impl VolumeBuilder {
             for job in jobs {
                 let (light, kept) = (&lights[job.number], old.kept_fixed(job.number));
                 let hide = job.hide && old.culls.has(Cull::Hidden);
-                build_one(world, light, kept, hide, &makes, &mut scratch, out);
+                build_one(world, light, kept, hide, &makes, &mut scratch, out, &mut ());
             }
             lock(pool).push(scratch);
         };
@@ -197,7 +235,8 @@ fn casters(chain: &[Chain]) -> u32 {
     chain.iter().map(Chain::len).sum::<usize>() as u32
 }
 
-fn build_one(
+#[expect(clippy::too_many_arguments, reason = "two callers, one line each")]
+fn build_one<C: Clock>(
     world: &World,
     light: &Light,
     kept: Option<(&[Chain], u32)>,
@@ -205,6 +244,7 @@ fn build_one(
     makes: &Makes<'_>,
     scratch: &mut Scratch,
     out: &mut Built,
+    clock: &mut C,
 ) {
     let start = Instant::now();
     let (first_quad, first_chain) = (out.quads.len(), out.chains.len());
@@ -216,7 +256,9 @@ fn build_one(
         }
         None => {
             query(world, Layer::Fixed, light, &mut scratch.subset);
+            clock.lap(BuildStage::Query);
             facing(world, light, &scratch.subset, &mut scratch.chain);
+            clock.lap(BuildStage::Facing);
             scratch.subset.len() as u32
         }
     };
@@ -228,6 +270,7 @@ fn build_one(
             scratch.hidden = HiddenScratch::default();
         }
     }
+    clock.lap(BuildStage::Hidden);
     out.kept.push(Kept {
         chain: scratch.chain.len() as u32,
         casters: casters(&scratch.chain),
@@ -235,7 +278,9 @@ fn build_one(
     });
     if !world.objects.is_empty() {
         query(world, Layer::Objects, light, &mut scratch.subset);
+        clock.lap(BuildStage::Query);
         facing(world, light, &scratch.subset, &mut scratch.chain);
+        clock.lap(BuildStage::Facing);
         subset_triangles += scratch.subset.len() as u32;
     }
     let chain = &scratch.chain;
@@ -253,14 +298,17 @@ fn build_one(
         true => (scratch.layers).split(world, light, chain, makes.layers.part),
         false => Vec::new(),
     };
+    clock.lap(BuildStage::Layers);
     if parts.len() < 2 {
         makes.quads(world, chain, &mut scratch.marks, &mut out.quads);
+        clock.lap(BuildStage::Counters);
         let quads = &mut out.quads[first_quad..];
         volume.in_range = range_first(world, light, quads, &mut scratch.sorting);
     } else {
         for chain in &parts {
             let (quads, chains) = (out.quads.len() as u32, out.chains.len() as u32);
             makes.quads(world, chain, &mut scratch.marks, &mut out.quads);
+            clock.lap(BuildStage::Counters);
             out.chains.extend_from_slice(chain);
             volume.parts.push(Part {
                 quads: quads..out.quads.len() as u32,
@@ -270,6 +318,7 @@ fn build_one(
         volume.in_range = RangePrefix::all((out.quads.len() - first_quad) as u32);
     }
     volume.quads = first_quad as u32..out.quads.len() as u32;
+    clock.lap(BuildStage::Emission);
     #[cfg(debug_assertions)]
     if makes.construction != Construction::Crow {
         let of = |range: &std::ops::Range<u32>| range.start as usize..range.end as usize;

@@ -62,8 +62,8 @@ fn arriving(light: Light, q: vec3f) -> vec4f {
     return vec4f(to_light, strength);
 }
 
-@fragment
-fn shade(in: Varying) -> @location(0) vec4f {
+// What the surface reflects of a light.
+fn reflected(in: Varying) -> vec4f {
     let light = lights[in.light];
     let texel = vec2i(in.position.xy);
     let distance = textureLoad(distance_texture, texel, 0).x;
@@ -92,8 +92,34 @@ fn shade(in: Varying) -> @location(0) vec4f {
     let half_way = normalize(to_light + to_eye);
     let highlight = 0.04 * (shininess + 8.0) / 25.1327
         * pow(max(dot(n, half_way), 0.0), max(shininess, 1.0));
-    let reflected = (surface.rgb / 3.14159265 + highlight) * cosine;
-    return vec4f(min(light.power * strength * reflected, vec3f(6e4)), 1.0);
+    let brdf = (surface.rgb / 3.14159265 + highlight) * cosine;
+    return vec4f(min(light.power * strength * brdf, vec3f(6e4)), 1.0);
+}
+
+@fragment
+fn shade(in: Varying) -> @location(0) vec4f {
+    return reflected(in);
+}
+
+// Counts: a sample in green, one where the light shows (reflected light of at least 1) in blue, and
+// there, in alpha, the least part of its range that would do: the pixel gets darker by no more than 1
+// and a little of what it has.
+@fragment
+fn count(in: Varying) -> @location(0) vec4f {
+    let added = reflected(in).xyz;
+    let most = max(added.x, max(added.y, added.z));
+    if most < 1.0 {
+        return vec4f(0.0, 1.0, 0.0, 0.0);
+    }
+    let light = lights[in.light];
+    let distance = textureLoad(distance_texture, vec2i(in.position.xy), 0).x;
+    let v = umbrage_minus_eye(view, light.position, light.residual)
+        - surface_offset(in.position.xy, distance);
+    let ratio2 = dot(v, v) / (light.range * light.range);
+    // The window of attenuation() at another range, against what must remain.
+    let kept = 1.0 - min((1.0 + 0.008 * most) / most, 1.0);
+    let share = sqrt(sqrt(ratio2 * ratio2 / (1.0 - (1.0 - ratio2 * ratio2) * kept)));
+    return vec4f(0.0, 1.0, 1.0, select(share, 0.0, light.kind == 2u || kept == 0.0));
 }
 
 // What the light adds in its shadow too: an eighth of what arrives, from everywhere.

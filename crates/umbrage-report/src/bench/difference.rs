@@ -30,7 +30,7 @@ impl std::fmt::Debug for Difference {
     }
 }
 
-/// A difference picture as the page has it: an indexed PNG file, small enough to lie in it.
+/// A picture as a page has it: a PNG file, small enough to lie in it.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     /// Width and height.

@@ -7,6 +7,9 @@ use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
+use crate::figure::{figure, plural};
+use crate::page::escape;
+
 /// The computer and the program, so that figures can be placed and repeated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -49,6 +52,46 @@ impl Machine {
             os: format!("{os} ({})", std::env::consts::ARCH),
             ..Self::default()
         }
+    }
+}
+
+impl Machine {
+    /// What is known of it as HTML, and when (RFC 3339) it was at work; the rest is left out.
+    pub(crate) fn html(&self, when: &str) -> String {
+        let Self {
+            cpu,
+            cores,
+            threads,
+            memory_gib,
+            os,
+            adapter,
+            driver,
+            version,
+        } = self;
+        let mut processor = cpu.clone();
+        if *cores > 0 {
+            let gap = if cpu.is_empty() { "" } else { ", " };
+            processor += &format!("{gap}{}", plural(*cores as usize, "core"));
+            if *threads > 0 && threads != cores {
+                processor += &format!(", {} used", plural(*threads as usize, "thread"));
+            }
+        }
+        let memory = memory_gib.map_or_else(String::new, |gib| format!("{} GiB", figure(gib)));
+        let date = when.replacen('T', " ", 1).replace('Z', " UTC");
+        let entries = [
+            ("Adapter", adapter),
+            ("Driver", driver),
+            ("Processor", &processor),
+            ("Memory", &memory),
+            ("System", os),
+            ("Umbrage", version),
+            ("Begun", &date),
+        ];
+        let mut html = String::from("<dl class=\"machine\">");
+        for (name, value) in entries.into_iter().filter(|(_, value)| !value.is_empty()) {
+            html += &format!("<div><dt>{name}</dt><dd>{}</dd></div>", escape(value));
+        }
+        html + "</dl>"
     }
 }
 

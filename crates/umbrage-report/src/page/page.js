@@ -1,5 +1,5 @@
 "use strict";
-// Tables sort by a click on a head; marks tell their figures when pointed at or focused, and what
+// Tables sort by a click on a head, and filter by what is typed; marks tell their figures when pointed at or focused, and what
 // belongs to the same method lights up everywhere. Without this script the page reads the same.
 
 // Sorting: numbers by data-v, text as shown; what has no value stays last.
@@ -28,6 +28,24 @@ for (const table of document.querySelectorAll("table.sortable")) {
       body.append(...rows.map(([, row]) => row));
     });
   });
+}
+
+// Filtering: rows that have every word that is typed; those of a mark too.
+for (const box of document.querySelectorAll("input.filter")) {
+  const rows = [...document.getElementById(box.dataset.for).tBodies[0].rows];
+  const shown = box.parentElement.querySelector("output");
+  const filter = () => {
+    const words = box.value.toLowerCase().split(/\s+/).filter(Boolean);
+    let count = 0;
+    for (const row of rows) {
+      const text = row.textContent.toLowerCase();
+      row.hidden = !words.every((word) => text.includes(word));
+      count += !row.hidden;
+    }
+    shown.textContent = `${count} of ${rows.length}`;
+  };
+  box.addEventListener("input", filter);
+  filter();
 }
 
 // Tooltips: the text of <title>, at once and in the page's own style.

@@ -230,10 +230,15 @@ fn everywhere(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn nothing() {}
 
-// Debug views: fragments, and layers.
 @fragment
 fn one() -> @location(0) vec4f {
     return vec4f(1.0);
+}
+
+// Debug views: fragments, in red alone, and layers.
+@fragment
+fn one_in_red() -> @location(0) vec4f {
+    return vec4f(1.0, 0.0, 0.0, 0.0);
 }
 
 @fragment

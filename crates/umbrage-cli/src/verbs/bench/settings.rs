@@ -69,7 +69,7 @@ fn actor(ActorChoice { file, placement }: &ActorChoice) -> String {
 }
 
 /// How a program was called, for a shell; what is no Unicode is shown as well as can be.
-pub(super) fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
+pub(crate) fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
     let quoted = |word: OsString| {
         let word = word.to_string_lossy().into_owned();

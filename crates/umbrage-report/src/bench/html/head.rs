@@ -1,8 +1,8 @@
 //! The head of the page: what was found, what ran, where, and how to run it again.
 
-use crate::bench::{BenchReport, BenchRow, Machine, OverAll, over_all};
-use crate::figure::figure;
-use crate::page::escape;
+use crate::bench::{BenchReport, BenchRow, OverAll, over_all};
+use crate::figure::{figure, plural};
+use crate::page::{command, escape};
 
 pub(super) fn head(report: &BenchReport, scenes: &[&str]) -> String {
     let mut html = String::from(
@@ -27,14 +27,8 @@ pub(super) fn head(report: &BenchReport, scenes: &[&str]) -> String {
             escape(&first.method)
         );
     }
-    html += &machine(report);
-    if !report.command.is_empty() {
-        html += &format!(
-            "<div class=\"command\"><pre tabindex=\"0\"><code>{}</code></pre>\
-             <button type=\"button\" id=\"copy\">Copy</button></div>",
-            escape(&report.command)
-        );
-    }
+    html += &report.machine.html(&report.when);
+    html += &command(&report.command);
     html += &contents(report, scenes);
     html + "</header>"
 }
@@ -69,49 +63,6 @@ fn extent(report: &BenchReport, scenes: &[&str]) -> String {
         );
     }
     text
-}
-
-fn plural(count: usize, noun: &str) -> String {
-    let s = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{s}")
-}
-
-/// What is known of the machine; the rest is left out.
-fn machine(report: &BenchReport) -> String {
-    let Machine {
-        cpu,
-        cores,
-        threads,
-        memory_gib,
-        os,
-        adapter,
-        driver,
-        version,
-    } = &report.machine;
-    let mut processor = cpu.clone();
-    if *cores > 0 {
-        let gap = if cpu.is_empty() { "" } else { ", " };
-        processor += &format!("{gap}{}", plural(*cores as usize, "core"));
-        if *threads > 0 && threads != cores {
-            processor += &format!(", {} used", plural(*threads as usize, "thread"));
-        }
-    }
-    let memory = memory_gib.map_or_else(String::new, |gib| format!("{} GiB", figure(gib)));
-    let date = report.when.replacen('T', " ", 1).replace('Z', " UTC");
-    let entries = [
-        ("Adapter", adapter),
-        ("Driver", driver),
-        ("Processor", &processor),
-        ("Memory", &memory),
-        ("System", os),
-        ("Umbrage", version),
-        ("Begun", &date),
-    ];
-    let mut html = String::from("<dl class=\"machine\">");
-    for (name, value) in entries.into_iter().filter(|(_, value)| !value.is_empty()) {
-        html += &format!("<div><dt>{name}</dt><dd>{}</dd></div>", escape(value));
-    }
-    html + "</dl>"
 }
 
 fn contents(report: &BenchReport, scenes: &[&str]) -> String {
