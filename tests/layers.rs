@@ -304,7 +304,10 @@ fn divided_lights_may_be_left_unshadowed() {
             let [before, after] = [&whole, &left].map(|mask| mask.get(x, y, light));
             assert_eq!(before, after, "light {light} at {x}, {y}");
         }
-        assert!(left.get(x, y, 0) || !whole.get(x, y, 0), "{x}, {y} is darker");
+        assert!(
+            left.get(x, y, 0) || !whole.get(x, y, 0),
+            "{x}, {y} is darker"
+        );
         brightened += u32::from(left.get(x, y, 0) && !whole.get(x, y, 0));
     }
     assert!(brightened > 100, "{brightened} pixels");

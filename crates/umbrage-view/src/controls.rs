@@ -57,7 +57,7 @@ pub(crate) fn apply(viewer: &mut Viewer, picture: &Response, rows: &[Row]) -> Re
         }
     }
     if picture.clicked() {
-        ctx.memory_mut(|memory| memory.stop_text_input());
+        ctx.memory_mut(egui::Memory::stop_text_input);
     }
     match ctx.egui_wants_keyboard_input() {
         true => Ok(()),

@@ -81,7 +81,9 @@ impl Overlay {
 
 /// Mean and most of counts.
 fn summary(counts: &[f32], what: &str) -> String {
-    let sum: f64 = counts.iter().map(|&count| f64::from(count)).sum();
+    let sum = counts
+        .iter()
+        .fold(0.0, |sum, &count| sum + f64::from(count));
     let most = counts.iter().copied().fold(0.0, f32::max);
     let mean = sum / counts.len().max(1) as f64;
     format!("{what} a pixel: mean {mean:.2}, most {most:.0}")

@@ -98,7 +98,8 @@ impl ShadowRenderer {
 
     /// As [`ViewShadows::record_volume`].
     pub fn record_volume(&self, pass: &mut RenderPass<'_>, plan: &FramePlan, number: usize) {
-        self.view.record_volume(pass, self.shared.pipelines(), plan, number);
+        self.view
+            .record_volume(pass, self.shared.pipelines(), plan, number);
     }
 
     /// As [`ViewShadows::record_light`].
@@ -110,7 +111,8 @@ impl ShadowRenderer {
         draw_light: impl FnOnce(&mut RenderPass<'_>, usize, &LightPlan),
     ) {
         let pipelines = self.shared.pipelines();
-        self.view.record_light(pass, pipelines, plan, number, draw_light);
+        self.view
+            .record_light(pass, pipelines, plan, number, draw_light);
     }
 
     /// As [`ViewShadows::draw_light`].

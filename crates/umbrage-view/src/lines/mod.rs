@@ -138,7 +138,7 @@ impl Lines {
     ) {
         let casters: Vec<u32> = volumes
             .chain_triangles(number)
-            .map(|caster| caster.triangle())
+            .map(umbrage_core::volume::ChainTriangle::triangle)
             .collect();
         let mut subset = Subset::default();
         let mut others = Vec::new();

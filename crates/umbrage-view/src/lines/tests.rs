@@ -3,7 +3,7 @@ use umbrage_core::{Casting, Mesh};
 
 use super::*;
 
-/// A square of two triangles one metre below a lamp, and `fins` more triangles on one of its sides.
+/// A square of two triangles one metre below a lamp, and `fins` more triangles below it on one of its sides.
 fn lamp_over_square(fins: u32) -> (World, Light, Volumes) {
     let mut positions = vec![
         Vec3::new(-1.0, 0.0, -1.0),
@@ -13,7 +13,7 @@ fn lamp_over_square(fins: u32) -> (World, Light, Volumes) {
     ];
     let mut triangles = vec![[0, 1, 2], [0, 2, 3]];
     for fin in 0..fins {
-        positions.push(Vec3::new(-2.0, -0.1 * (fin + 1) as f32, 0.0));
+        positions.push(Vec3::new(0.5, -0.1 * (fin + 1) as f32, 0.0));
         triangles.push([0, 1, 4 + fin]);
     }
     let mesh = Mesh {
