@@ -1,7 +1,7 @@
 //! What each light costs: the report of `umbrage profile`.
 //!
 //! Takes rows, one a light, and advice, as the profiler measured them; gives files
-//! ([`write`]) and a trace ([`trace`]). Invariant: a figure that was not measured is null.
+//! ([`write()`]) and a trace ([`trace`]). Invariant: a figure that was not measured is null.
 
 mod html;
 mod rows;
