@@ -19,6 +19,28 @@ pub struct Column {
     pub numeric: bool,
 }
 
+impl Column {
+    /// A column of numbers.
+    pub(crate) const fn number(name: &'static str, unit: &'static str, key: &'static str) -> Self {
+        Self {
+            name,
+            unit,
+            key,
+            numeric: true,
+        }
+    }
+
+    /// A column of words.
+    pub(crate) const fn text(name: &'static str, key: &'static str) -> Self {
+        Self {
+            name,
+            unit: "",
+            key,
+            numeric: false,
+        }
+    }
+}
+
 /// One cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cell {

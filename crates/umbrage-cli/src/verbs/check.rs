@@ -15,7 +15,7 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::{CheckReport, LightLayers, LightsByPath, WorstPixel};
 use crate::setting::Setting;
-use crate::verbs::render::in_parts;
+use crate::verbs::render::{drawn, in_parts};
 use umbrage_report::Table;
 
 /// Loads, draws masks, judges them; a wrong pixel-light fails a method that promises there is none.
@@ -145,13 +145,8 @@ fn ones(word: &u32) -> u64 {
 }
 
 fn table(report: &CheckReport) -> Table {
-    let mut table = Table::default();
-    let size = report.size;
+    let mut table = drawn(&report.scene, &report.method, &report.adapter, report.size);
     table
-        .row(["scene", &report.scene])
-        .row(["method", &report.method])
-        .row(["adapter", &report.adapter])
-        .row(["size".to_owned(), format!("{}x{}", size[0], size[1])])
         .count("pixels", report.pixels)
         .count("lights", report.lights)
         .count("  z-pass", report.lights_by_path.zpass)

@@ -140,15 +140,9 @@ fn file_name(name: &str) -> String {
 
 /// The frame, its stages, and the lights with the most quads.
 fn table(report: &RenderReport) -> Table {
-    let mut table = Table::default();
     let totals = &report.totals;
-    let size = report.size;
-    table
-        .row(["scene", &report.scene])
-        .row(["method", &report.method])
-        .row(["adapter", &report.adapter])
-        .row(["size".to_owned(), format!("{}x{}", size[0], size[1])])
-        .row(["frame".to_owned(), milliseconds(report.frame_ms)]);
+    let mut table = drawn(&report.scene, &report.method, &report.adapter, report.size);
+    table.row(["frame".to_owned(), milliseconds(report.frame_ms)]);
     for (stage, ms) in &report.stages_ms {
         table.row([format!("  {stage}"), milliseconds(*ms)]);
     }
@@ -195,6 +189,17 @@ pub(crate) fn in_parts(lights: u64) -> String {
     format!("{lights}: behind 256 casters or more the stencil would wrap; counted part by part")
 }
 
-fn milliseconds(ms: f64) -> String {
+/// A table that begins with what was drawn, how, on what and how large.
+pub(super) fn drawn(scene: &str, method: &str, adapter: &str, [width, height]: [u32; 2]) -> Table {
+    let mut table = Table::default();
+    table
+        .row(["scene", scene])
+        .row(["method", method])
+        .row(["adapter", adapter])
+        .row(["size".to_owned(), format!("{width}x{height}")]);
+    table
+}
+
+pub(super) fn milliseconds(ms: f64) -> String {
     format!("{ms:.2} ms")
 }

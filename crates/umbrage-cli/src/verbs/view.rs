@@ -10,6 +10,7 @@ use crate::error::CliError;
 use crate::progress::Bar;
 use crate::report::ViewReport;
 use crate::setting::Setting;
+use crate::verbs::render::{drawn, milliseconds};
 
 /// Lights named where one is not found.
 const NAMED: usize = 5;
@@ -70,17 +71,9 @@ fn number(lights: &[StageLight], name: &str) -> Result<usize, CliError> {
 }
 
 fn table(report: &ViewReport) -> Table {
-    let mut table = Table::default();
-    let size = report.size;
+    let mut table = drawn(&report.scene, &report.method, &report.adapter, report.size);
     table
-        .row(["scene", &report.scene])
-        .row(["method", &report.method])
-        .row(["adapter", &report.adapter])
-        .row(["size".to_owned(), format!("{}x{}", size[0], size[1])])
         .count("frames", report.frames)
-        .row([
-            "last frame".to_owned(),
-            format!("{:.2} ms", report.frame_ms),
-        ]);
+        .row(["last frame".to_owned(), milliseconds(report.frame_ms)]);
     table
 }

@@ -12,82 +12,71 @@ use crate::sortable::{Cell, Column, Row, table};
 
 type Field = (Column, fn(&BenchRow) -> Cell);
 
-const fn number(name: &'static str, unit: &'static str, key: &'static str) -> Column {
-    Column {
-        name,
-        unit,
-        key,
-        numeric: true,
-    }
-}
-
-const fn text(name: &'static str, key: &'static str) -> Column {
-    Column {
-        name,
-        unit: "",
-        key,
-        numeric: false,
-    }
-}
-
-const CAMERA: Field = (text("Camera", "camera"), |row| Cell::text(&row.camera));
-const SIZE: Field = (number("Size", "pixels", "size"), |row| {
+const CAMERA: Field = (Column::text("Camera", "camera"), |row| {
+    Cell::text(&row.camera)
+});
+const SIZE: Field = (Column::number("Size", "pixels", "size"), |row| {
     let [width, height] = row.size;
     let pixels = f64::from(width) * f64::from(height);
     Cell::number(format!("{width}\u{d7}{height}"), Some(pixels))
 });
-const LIGHTS: Field = (number("Lights", "", "lights"), |row| {
+const LIGHTS: Field = (Column::number("Lights", "", "lights"), |row| {
     count(Some(row.lights))
 });
-const TRIANGLES: Field = (number("Triangles", "", "triangles"), |row| {
+const TRIANGLES: Field = (Column::number("Triangles", "", "triangles"), |row| {
     count(Some(row.triangles))
 });
 
-const FRAMES: Field = (number("Frames", "timed", "repeats"), |row| {
+const FRAMES: Field = (Column::number("Frames", "timed", "repeats"), |row| {
     count(Some(u64::from(row.repeats)))
 });
 
 const FIGURES: [Field; 13] = [
-    (number("Frame", "ms, median", "frame_ms"), |row| {
+    (Column::number("Frame", "ms, median", "frame_ms"), |row| {
         time(row.frame_ms)
     }),
-    (number("Fastest", "ms", "frame_ms_min"), |row| {
+    (Column::number("Fastest", "ms", "frame_ms_min"), |row| {
         time(row.frame_ms_min)
     }),
-    (number("Slowest", "ms", "frame_ms_max"), |row| {
+    (Column::number("Slowest", "ms", "frame_ms_max"), |row| {
         time(row.frame_ms_max)
     }),
-    (number("Spread", "ms, IQR", "frame_ms_iqr"), |row| {
+    (Column::number("Spread", "ms, IQR", "frame_ms_iqr"), |row| {
         time(row.frame_ms_iqr)
     }),
-    (number("Frame", "\u{d7} none", "times_none"), |row| {
-        time(row.times_none)
-    }),
-    (number("Volumes", "ms, CPU", "build_ms"), |row| {
+    (
+        Column::number("Frame", "\u{d7} none", "times_none"),
+        |row| time(row.times_none),
+    ),
+    (Column::number("Volumes", "ms, CPU", "build_ms"), |row| {
         time(row.build_ms)
     }),
-    (number("First", "ms, frame", "first_frame_ms"), |row| {
-        time(row.first_frame_ms)
+    (
+        Column::number("First", "ms, frame", "first_frame_ms"),
+        |row| time(row.first_frame_ms),
+    ),
+    (Column::number("GPU", "ms", "gpu_ms"), |row| {
+        time(row.gpu_ms)
     }),
-    (number("GPU", "ms", "gpu_ms"), |row| time(row.gpu_ms)),
-    (number("Wrong", "pixel-lights", "wrong"), |row| {
+    (Column::number("Wrong", "pixel-lights", "wrong"), |row| {
         count(row.wrong)
     }),
-    (number("Wrong", "ppm", "wrong_ppm"), |row| {
+    (Column::number("Wrong", "ppm", "wrong_ppm"), |row| {
         time(row.wrong_ppm)
     }),
-    (number("Ambiguous", "pixel-lights", "ambiguous"), |row| {
-        count(row.ambiguous)
-    }),
-    (number("Judged", "pixel-lights", "samples"), |row| {
+    (
+        Column::number("Ambiguous", "pixel-lights", "ambiguous"),
+        |row| count(row.ambiguous),
+    ),
+    (Column::number("Judged", "pixel-lights", "samples"), |row| {
         count(row.samples)
     }),
-    (number("Memory", "MiB, GPU", "gpu_bytes"), |row| {
+    (Column::number("Memory", "MiB, GPU", "gpu_bytes"), |row| {
         time(row.gpu_bytes.map(|bytes| bytes as f64 / (1024.0 * 1024.0)))
     }),
 ];
 
-const NOTE: Field = (text("Note", "note"), |row| match &row.failed {
+const NOTE: Field = (Column::text("Note", "note"), |row| match &row.failed {
     Some(why) => Cell {
         shown: row.note.clone(),
         tags: vec![("bad", format!("failed: {why}"))],
@@ -143,7 +132,7 @@ pub(super) fn scene_table(report: &BenchReport, scene: &str, views: &[&View]) ->
     // A column in which nothing was measured says nothing.
     fields.retain(|(column, of)| !column.numeric || rows.iter().any(|row| of(row).value.is_some()));
 
-    let mut columns = vec![text("Method", "method")];
+    let mut columns = vec![Column::text("Method", "method")];
     columns.extend(fields.iter().map(|(column, _)| *column));
     let mut body = Vec::new();
     for view in views {
@@ -201,10 +190,10 @@ fn line(row: &BenchRow, is_best: bool) -> Row {
 /// Methods by growing time over all views.
 pub(super) fn over_all_table(report: &BenchReport, all: &[OverAll]) -> String {
     let columns = [
-        text("Method", "method"),
-        number("Frame", "\u{d7} none", "times_none"),
-        number("Wrong", "ppm, sum", "wrong_ppm"),
-        number("Views", "", "views"),
+        Column::text("Method", "method"),
+        Column::number("Frame", "\u{d7} none", "times_none"),
+        Column::number("Wrong", "ppm, sum", "wrong_ppm"),
+        Column::number("Views", "", "views"),
     ];
     let time_of = |one: &OverAll| one.times_none.unwrap_or(f64::INFINITY);
     let mut sorted: Vec<&OverAll> = all.iter().collect();

@@ -8,24 +8,6 @@ use crate::sortable::{Cell, Column, Row, filtered_table};
 /// A column, and what it shows of a light.
 type Field = (Column, fn(&LightRow) -> Cell);
 
-const fn number(name: &'static str, unit: &'static str, key: &'static str) -> Column {
-    Column {
-        name,
-        unit,
-        key,
-        numeric: true,
-    }
-}
-
-const fn text(name: &'static str, key: &'static str) -> Column {
-    Column {
-        name,
-        unit: "",
-        key,
-        numeric: false,
-    }
-}
-
 fn us(value: Option<f64>) -> Cell {
     Cell::number(figure_or_dash(value), value)
 }
@@ -35,81 +17,93 @@ fn count(value: u64) -> Cell {
 }
 
 const FIELDS: [Field; 24] = [
-    (number("Frame", "% of it", "frame_share"), |l| {
+    (Column::number("Frame", "% of it", "frame_share"), |l| {
         us(l.frame_share.map(|share| 100.0 * share))
     }),
-    (number("Own", "\u{b5}s, frame", "frame_us"), |l| {
+    (Column::number("Own", "\u{b5}s, frame", "frame_us"), |l| {
         us(l.frame_us)
     }),
-    (number("Volume", "\u{b5}s, GPU", "gpu_us.volume"), |l| {
-        us(l.gpu_us.map(|gpu| gpu.volume))
-    }),
-    (number("Light", "\u{b5}s, GPU", "gpu_us.light"), |l| {
-        us(l.gpu_us.map(|gpu| gpu.light))
-    }),
-    (number("Built", "\u{b5}s, CPU", "cpu_us"), |l| {
+    (
+        Column::number("Volume", "\u{b5}s, GPU", "gpu_us.volume"),
+        |l| us(l.gpu_us.map(|gpu| gpu.volume)),
+    ),
+    (
+        Column::number("Light", "\u{b5}s, GPU", "gpu_us.light"),
+        |l| us(l.gpu_us.map(|gpu| gpu.light)),
+    ),
+    (Column::number("Built", "\u{b5}s, CPU", "cpu_us"), |l| {
         us(Some(l.cpu_us.total()))
     }),
-    (number("Query", "\u{b5}s", "cpu_us.query"), |l| {
+    (Column::number("Query", "\u{b5}s", "cpu_us.query"), |l| {
         us(Some(l.cpu_us.query))
     }),
-    (number("Facing", "\u{b5}s", "cpu_us.facing"), |l| {
+    (Column::number("Facing", "\u{b5}s", "cpu_us.facing"), |l| {
         us(Some(l.cpu_us.facing))
     }),
-    (number("Hidden", "\u{b5}s", "cpu_us.hidden"), |l| {
+    (Column::number("Hidden", "\u{b5}s", "cpu_us.hidden"), |l| {
         us(Some(l.cpu_us.hidden))
     }),
-    (number("Layers", "\u{b5}s", "cpu_us.layers"), |l| {
+    (Column::number("Layers", "\u{b5}s", "cpu_us.layers"), |l| {
         us(Some(l.cpu_us.layers))
     }),
-    (number("Counters", "\u{b5}s", "cpu_us.counters"), |l| {
-        us(Some(l.cpu_us.counters))
-    }),
-    (number("Emission", "\u{b5}s", "cpu_us.emission"), |l| {
-        us(Some(l.cpu_us.emission))
-    }),
-    (number("Upload", "\u{b5}s", "cpu_us.upload"), |l| {
+    (
+        Column::number("Counters", "\u{b5}s", "cpu_us.counters"),
+        |l| us(Some(l.cpu_us.counters)),
+    ),
+    (
+        Column::number("Emission", "\u{b5}s", "cpu_us.emission"),
+        |l| us(Some(l.cpu_us.emission)),
+    ),
+    (Column::number("Upload", "\u{b5}s", "cpu_us.upload"), |l| {
         us(Some(l.cpu_us.upload))
     }),
-    (number("Subset", "triangles", "subset_triangles"), |l| {
-        count(l.subset_triangles)
+    (
+        Column::number("Subset", "triangles", "subset_triangles"),
+        |l| count(l.subset_triangles),
+    ),
+    (
+        Column::number("Facing", "triangles", "facing_triangles"),
+        |l| count(l.facing_triangles),
+    ),
+    (Column::number("Quads", "built", "quads"), |l| {
+        count(l.quads)
     }),
-    (number("Facing", "triangles", "facing_triangles"), |l| {
-        count(l.facing_triangles)
-    }),
-    (number("Quads", "built", "quads"), |l| count(l.quads)),
-    (number("Quads", "drawn", "quads_drawn"), |l| {
+    (Column::number("Quads", "drawn", "quads_drawn"), |l| {
         count(l.quads_drawn)
     }),
-    (number("Caps", "triangles", "cap_triangles"), |l| {
+    (Column::number("Caps", "triangles", "cap_triangles"), |l| {
         count(l.cap_triangles)
     }),
-    (number("Volume", "fragments", "volume_fragments"), |l| {
-        count(l.volume_fragments)
-    }),
-    (number("Covered", "samples", "light_fragments"), |l| {
-        count(l.light_fragments)
-    }),
-    (number("Shaded", "samples", "shaded_samples"), |l| {
+    (
+        Column::number("Volume", "fragments", "volume_fragments"),
+        |l| count(l.volume_fragments),
+    ),
+    (
+        Column::number("Covered", "samples", "light_fragments"),
+        |l| count(l.light_fragments),
+    ),
+    (Column::number("Shaded", "samples", "shaded_samples"), |l| {
         count(l.shaded_samples)
     }),
-    (number("Lit", "pixels", "lit_pixels"), |l| {
+    (Column::number("Lit", "pixels", "lit_pixels"), |l| {
         count(l.lit_pixels)
     }),
-    (number("Shadowed", "pixels", "shadowed_pixels"), |l| {
-        count(l.shadowed_pixels)
-    }),
-    (number("Range", "m", "range"), |l| {
+    (
+        Column::number("Shadowed", "pixels", "shadowed_pixels"),
+        |l| count(l.shadowed_pixels),
+    ),
+    (Column::number("Range", "m", "range"), |l| {
         us(l.range.map(f64::from))
     }),
-    (number("Needed", "m, range", "range_needed_m"), |l| {
-        us(Some(l.range_needed_m))
-    }),
+    (
+        Column::number("Needed", "m, range", "range_needed_m"),
+        |l| us(Some(l.range_needed_m)),
+    ),
 ];
 
 /// All lights, the costliest first; then what they leave of the frame.
 pub(super) fn lights(report: &ProfileReport) -> String {
-    let mut columns = vec![text("Light", "name"), text("Path", "path")];
+    let mut columns = vec![Column::text("Light", "name"), Column::text("Path", "path")];
     columns.extend(FIELDS.iter().map(|(column, _)| *column));
     let mut lights: Vec<&LightRow> = report.lights.iter().collect();
     lights.sort_by(|a, b| super::cost(b).total_cmp(&super::cost(a)));

@@ -30,16 +30,10 @@ pub(super) fn section(report: &ProfileReport) -> String {
 }
 
 fn parts(caption: &str, parts: &[Share]) -> String {
-    let column = |name, unit, key, numeric| Column {
-        name,
-        unit,
-        key,
-        numeric,
-    };
     let columns = [
-        column("Part", "", "name", false),
-        column("Time", "\u{b5}s", "us", true),
-        column("Share", "%", "share", true),
+        Column::text("Part", "name"),
+        Column::number("Time", "\u{b5}s", "us"),
+        Column::number("Share", "%", "share"),
     ];
     let row = |part: &Share| Row {
         cells: vec![
