@@ -59,7 +59,9 @@ fn figures(viewer: &mut Viewer, ui: &mut Ui, rows: &[Row]) {
     let times = &lab.times;
     ui.horizontal(|ui| {
         ui.strong(&viewer.stage.scene.name);
-        ui.weak(format!("{}, {}", viewer.method.name(), lab.gpu().adapter));
+        let drawn_by = format!("{}, {}", viewer.method.name(), lab.gpu().adapter);
+        // Whole, it could widen the panel.
+        ui.add(egui::Label::new(RichText::new(drawn_by).weak()).truncate());
     });
     let on_gpu = match lab.gpu().timestamp_ns {
         Some(_) => format!(
