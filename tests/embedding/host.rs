@@ -224,7 +224,7 @@ impl<'g> Drawing<'g> {
     }
 
     /// The mask of one view by callbacks; lights for which `skip` is true are not marked. With several
-    /// samples a bit is what most of them say, if it is the only light's.
+    /// samples a bit is what most of them say, if it is the lowest of its channel and the only one.
     pub(crate) fn by_callback(
         &mut self,
         given: &Given,
