@@ -301,10 +301,10 @@ pub(crate) struct ProfileArgs {
 }
 
 const PROFILE_EXAMPLES: &str = "\
-The ordinary frame is timed first, undisturbed. Then each light is built on one thread with a clock
-between the stages, and drawn in passes of its own with timestamps at their bounds; --repeat is the
-number of rounds, and the least of them counts. What the lights' figures leave of the frame is shown
-as a remainder. Without timestamps there are no GPU figures.
+Ordinary frames are timed, undisturbed. In turn with them each light is built on one thread with a
+clock between the stages, and drawn in passes of its own, several times over; --repeat is the number of
+rounds, whose medians count. What the lights' figures leave of the frame is shown as a remainder.
+Without timestamps there are no GPU figures.
 
 Advice holds for the view at hand: a light may show elsewhere.
 

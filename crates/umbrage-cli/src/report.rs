@@ -457,10 +457,8 @@ mod tests {
             cap_triangles: 2,
             ..LightReport::default()
         };
-        let uploaded = Uploaded {
-            volume_bytes: 10,
-            other_bytes: 30,
-        };
+        let mut uploaded = Uploaded::default();
+        (uploaded.volume_bytes, uploaded.other_bytes) = (10, 30);
         let lights = [
             light(PathTaken::Zpass, true),
             light(PathTaken::Zfail, false),

@@ -32,11 +32,12 @@ fn every_light_is_named_and_costs_add_up() {
     assert_eq!(lights.len(), 471);
     let rendered = json(0, &["render", WORLD, "--size", "160x90", "--repeat", "1"]);
     let (mut drawn, mut own) = (0, 0.0);
+    let (mut in_front, mut covered) = (0, 0);
     for (light, rendered) in lights.iter().zip(rendered["lights"].as_array().unwrap()) {
         assert_keys(
             light,
             "name kind range position subset_triangles facing_triangles quads quads_drawn \
-             cap_triangles path reason cached cpu_us gpu_us volume_fragments light_fragments \
+             cap_triangles path reason cached cpu_us gpu_us volume_fragments volume_covered light_fragments \
              shaded_samples lit_pixels shadowed_pixels range_needed_m frame_us frame_share",
         );
         assert_keys(
@@ -59,6 +60,10 @@ fn every_light_is_named_and_costs_add_up() {
             count("shaded_samples") <= count("light_fragments"),
             "{light}"
         );
+        // Those behind surfaces count too.
+        let [before, all] = ["volume_fragments", "volume_covered"].map(count);
+        assert!(before <= all, "{light}");
+        (in_front, covered) = (in_front + before, covered + all);
         let is_drawn = light["path"] != "skipped";
         assert_eq!(count("light_fragments") > 0, is_drawn, "{light}");
         assert!(
@@ -68,7 +73,7 @@ fn every_light_is_named_and_costs_add_up() {
         drawn += usize::from(is_drawn);
         own += light["frame_us"].as_f64().unwrap_or(0.0);
     }
-    assert!(drawn > 50);
+    assert!(drawn > 50 && in_front > 0 && covered > in_front);
     let frame = &report["frame"];
     let sum = |key: &str| -> f64 {
         let parts = frame[key].as_array().expect("parts").iter();
@@ -264,4 +269,90 @@ fn lights_that_show_nowhere_and_lights_at_one_place_are_found() {
     assert_eq!(of("switch_off").len(), 1, "{all:?}");
     assert_eq!(of("switch_off")[0]["lights"][0], "cellar");
     assert_eq!(of("merge").len(), 1, "{all:?}");
+}
+
+/// Closed boxes in a grid between lamp and floor, seen from outside.
+fn crates(count: usize) -> Mesh {
+    let mut mesh = Mesh {
+        name: "crates".into(),
+        ..Mesh::default()
+    };
+    for i in 0..count {
+        let low = Vec3::new(
+            -1.5 + 0.2 * (i % 15) as f32,
+            0.4,
+            -1.5 + 0.2 * (i / 15) as f32,
+        );
+        let one = room(low, low + 0.1);
+        let base = mesh.positions.len() as u32;
+        mesh.positions.extend(one.positions);
+        let outwards = |[a, b, c]: [u32; 3]| [a, c, b].map(|v| v + base);
+        mesh.triangles
+            .extend(one.triangles.into_iter().map(outwards));
+        mesh.materials.extend(one.materials);
+    }
+    mesh
+}
+
+#[test]
+fn closed_boxes_that_cast_from_both_sides_are_told_to_cast_from_one() {
+    let mut crates = crates(225);
+    crates.materials.fill(1);
+    let mut scene = scene(3.6, vec![crates]);
+    scene.materials.push(Material {
+        name: "wood".into(),
+        double_sided: true,
+        ..Material::default()
+    });
+    // Their far sides cast as well, though near ones hide them.
+    let all = advice(&scene, "profile-sides", &["--no-cull", "quads,hidden"]);
+    let single: Vec<&Value> = (all.iter())
+        .filter(|one| one["kind"] == "single_sided")
+        .collect();
+    assert_eq!(single.len(), 1, "{all:?}");
+    assert_eq!(
+        (&single[0]["of"], &single[0]["pixels_changed"]),
+        (&"wood".into(), &0.into())
+    );
+    scene.materials[1].double_sided = false;
+    let all = advice(&scene, "profile-one-side", &["--no-cull", "quads,hidden"]);
+    assert!(
+        all.iter().all(|one| one["kind"] != "single_sided"),
+        "{all:?}"
+    );
+}
+
+#[test]
+fn a_lamp_in_line_with_an_edge_and_the_eye_is_told_to_move() {
+    let (lamp, edge) = (DVec3::new(0.0, 2.5, 0.0), DVec3::new(1.0, 1.5, 0.0));
+    let inside = room(Vec3::new(0.25, 1.0, -0.5), Vec3::new(1.0, 1.5, 0.5));
+    let shelf = Mesh {
+        name: "shelf".into(),
+        triangles: inside
+            .triangles
+            .iter()
+            .map(|&[a, b, c]| [a, c, b])
+            .collect(),
+        ..inside
+    };
+    // Below the floor, for caps and no shadows.
+    let mut scene = scene(3.6, vec![shelf, leaves(-0.5, 1600)]);
+    scene.lights[0].position = lamp;
+    let options = ["--casters", "both", "--no-cull", "hidden,quads"];
+    for (beyond, wanted) in [(1.75, 1), (1.8, 0)] {
+        let eye = lamp + (edge - lamp) * DVec3::new(1.75, beyond, 1.0);
+        let target = DVec3::new(-1.0, 0.2, -1.0);
+        scene.cameras[0] = Camera::look_at("door", eye, target, 1.0);
+        let all = advice(&scene, "profile-move", &options);
+        let moves: Vec<&Value> = all.iter().filter(|one| one["kind"] == "move").collect();
+        assert_eq!(moves.len(), wanted, "{beyond}: {all:?}");
+        if let Some(one) = moves.first() {
+            assert!(
+                one["text"]
+                    .as_str()
+                    .unwrap()
+                    .contains("an edge, the light and the eye")
+            );
+        }
+    }
 }

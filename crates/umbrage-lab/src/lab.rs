@@ -37,9 +37,8 @@ pub struct Lab {
     pub application: Application,
     /// Layers that the stencil is taken to hold; masks of other kinds have none in parts.
     pub layers: LayerLimit,
-    /// One flag a light: true if frames leave it out, though its volume is built and kept. Empty:
-    /// none.
-    pub muted: Vec<bool>,
+    /// Numbers of lights that frames leave out, though their volumes are built and kept.
+    pub muted: Vec<usize>,
     /// Numbers of lights whose volumes frames leave out: all that they reach is lit.
     pub unshadowed: Vec<usize>,
     /// Silhouettes and caps of the lights last given.
@@ -144,9 +143,8 @@ impl Lab {
     }
 
     fn mute(&mut self) {
-        let lights = self.plan.lights.iter_mut().zip(&self.muted);
-        for (light, _) in lights.filter(|(_, muted)| **muted) {
-            light.path = LightPath::Skipped(SkipReason::Muted);
+        for &light in &self.muted {
+            self.plan.lights[light].path = LightPath::Skipped(SkipReason::Muted);
         }
     }
 
@@ -291,10 +289,10 @@ impl Lab {
         waiting.end();
         frame_mark();
         if let Some(timer) = timer {
-            let [surface, receivers, lights] = timer.read(&self.gpu)?;
-            self.times.gpu_surface = surface;
-            self.times.gpu_receivers = receivers;
-            self.times.gpu_lights = lights;
+            let spans = timer.read(&self.gpu)?;
+            self.times.gpu_surface = spans[0];
+            self.times.gpu_receivers = spans[1];
+            self.times.gpu_lights = spans[2];
         }
         self.frames.push(self.times);
         Ok(())
@@ -435,13 +433,9 @@ impl Lab {
 
     /// What the renderer is to draw.
     pub(crate) fn frame<'a>(&'a self, view: &'a View) -> Frame<'a> {
-        Frame {
-            view,
-            lights: &self.lights,
-            volumes: &self.volumes,
-            plan: &self.plan,
-            culls: self.culls,
-        }
+        let mut frame = Frame::new(view, &self.lights, &self.volumes, &self.plan);
+        frame.culls = self.culls;
+        frame
     }
 
     /// GPU memory of the last frame: volumes, and what the technique holds.

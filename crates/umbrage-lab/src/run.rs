@@ -169,18 +169,6 @@ pub(crate) fn stencil_pass<'e>(
     load: wgpu::LoadOp<wgpu::Color>,
     stencil: wgpu::LoadOp<u32>,
 ) -> wgpu::RenderPass<'e> {
-    timed_pass(encoder, targets, color, load, stencil, None)
-}
-
-/// The same with timestamps at its begin and end.
-pub(crate) fn timed_pass<'e>(
-    encoder: &'e mut wgpu::CommandEncoder,
-    targets: &Targets,
-    color: &wgpu::Texture,
-    load: wgpu::LoadOp<wgpu::Color>,
-    stencil: wgpu::LoadOp<u32>,
-    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
-) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("lights"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -200,7 +188,6 @@ pub(crate) fn timed_pass<'e>(
                 store: wgpu::StoreOp::Store,
             }),
         }),
-        timestamp_writes,
         ..wgpu::RenderPassDescriptor::default()
     })
 }

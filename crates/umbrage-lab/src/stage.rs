@@ -133,6 +133,15 @@ pub struct Stage {
     pub time_s: f64,
 }
 
+/// By which rules a stage's triangles cast, with the world and the objects built for that: see
+/// [`Stage::recast`].
+#[derive(Debug)]
+pub struct Cast {
+    casting: Vec<Casting>,
+    world: World,
+    actors: Vec<Actor>,
+}
+
 /// Illuminance (lux) below which a light without a range is taken to end.
 const DARK: f32 = 0.01;
 
@@ -191,29 +200,30 @@ impl Stage {
         }
     }
 
-    /// Lets the triangles cast by other rules, one a triangle of `mesh`, and gives those there were.
-    /// The world is built again.
+    /// The world as it would be if the triangles cast by other rules, one a triangle of `mesh`.
     ///
     /// # Errors
-    /// As [`Stage::new`]; the stage then is as it was.
-    pub fn recast(&mut self, casting: Vec<Casting>) -> Result<Vec<Casting>, StageError> {
-        let old = std::mem::replace(&mut self.mesh.casting, casting);
+    /// As [`Stage::new`].
+    pub fn recast(&self, casting: Vec<Casting>) -> Result<Cast, StageError> {
         let [vertices, fixed] = fixed_part(&self.scene, &self.soup);
-        let built = World::build(&first(&self.mesh, vertices, fixed))
-            .map_err(|error| StageError::new(&self.scene, None, error.into()));
-        let inserted = built.and_then(|mut world| {
-            let (scene, soup, mesh) = (&self.scene, &self.soup, &self.mesh);
-            let actors = actors::insert(scene, soup, mesh, fixed, &mut world)?;
-            Ok((world, actors))
-        });
-        match inserted {
-            Ok((world, actors)) => (self.world, self.actors) = (world, actors),
-            Err(error) => {
-                self.mesh.casting = old;
-                return Err(error);
-            }
-        }
-        Ok(old)
+        let mesh = Mesh {
+            casting,
+            ..self.mesh.clone()
+        };
+        let mut world = World::build(&first(&mesh, vertices, fixed))
+            .map_err(|error| StageError::new(&self.scene, None, error.into()))?;
+        Ok(Cast {
+            actors: actors::insert(&self.scene, &self.soup, &mesh, fixed, &mut world)?,
+            casting: mesh.casting,
+            world,
+        })
+    }
+
+    /// Casts as `cast` has it, which then has what was there.
+    pub fn exchange(&mut self, cast: &mut Cast) {
+        std::mem::swap(&mut self.mesh.casting, &mut cast.casting);
+        std::mem::swap(&mut self.world, &mut cast.world);
+        std::mem::swap(&mut self.actors, &mut cast.actors);
     }
 
     /// A world point relative to the world origin.

@@ -78,6 +78,33 @@ pub(crate) trait Technique: Debug {
         target: &wgpu::Texture,
     ) -> Result<(), GpuError>;
 
+    /// Records the lights into `target` for their time alone, `times` over in one pass if it can;
+    /// says how often it did. The stencil may hold volumes before that; it is zero after it.
+    fn record_again(
+        &mut self,
+        given: &Given<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        lights: Range<usize>,
+        target: &wgpu::Texture,
+        _times: u32,
+    ) -> Result<u32, GpuError> {
+        self.record(given, encoder, lights, target)?;
+        Ok(1)
+    }
+
+    /// The same of their volumes without their light, which leaves the stencil as it happens to be;
+    /// says that it did so no time if it does not draw volume by volume.
+    fn record_volumes_again(
+        &mut self,
+        _given: &Given<'_>,
+        _encoder: &mut wgpu::CommandEncoder,
+        _lights: Range<usize>,
+        _target: &wgpu::Texture,
+        _times: u32,
+    ) -> u32 {
+        0
+    }
+
     /// The shadow renderer of its own that draws the quads, if it has one, and what `prepare`
     /// uploaded with it last.
     fn own_renderer(&self) -> Option<(&ShadowRenderer, Uploaded)> {

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::gpu::{Gpu, GpuError};
-use crate::readback::read_buffer;
+use crate::readback::read_items;
 
 /// Milliseconds of one frame's stages. GPU stages are zero without timestamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,7 +37,7 @@ impl StageTimes {
     }
 }
 
-/// Begin and end of the three GPU stages.
+/// Begin and end of spans of an encoder's work, by two timestamps each.
 #[derive(Debug)]
 pub(crate) struct Timer {
     set: wgpu::QuerySet,
@@ -47,14 +47,14 @@ pub(crate) struct Timer {
 }
 
 impl Timer {
-    const QUERIES: u32 = 6;
-
-    pub(crate) fn new(gpu: &Gpu) -> Option<Self> {
+    /// For so many spans; none without timestamps.
+    pub(crate) fn new(gpu: &Gpu, spans: u32) -> Option<Self> {
         let ns = gpu.timestamp_ns?;
+        let count = 2 * spans;
         let buffer = |label, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
-                size: u64::from(Self::QUERIES) * 8,
+                size: u64::from(count) * 8,
                 usage: usage | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             })
@@ -62,9 +62,9 @@ impl Timer {
         let resolve = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
         Some(Self {
             set: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
-                label: Some("stages"),
+                label: Some("timestamps"),
                 ty: wgpu::QueryType::Timestamp,
-                count: Self::QUERIES,
+                count,
             }),
             resolved: buffer("timestamps", resolve),
             readable: buffer("timestamps, readable", wgpu::BufferUsages::MAP_READ),
@@ -101,18 +101,15 @@ impl Timer {
     }
 
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.set, 0..Self::QUERIES, &self.resolved, 0);
+        encoder.resolve_query_set(&self.set, 0..self.set.count(), &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
     }
 
-    pub(crate) fn read(&self, gpu: &Gpu) -> Result<[f64; 3], GpuError> {
-        let bytes = read_buffer(gpu, &self.readable)?;
-        let ticks: Vec<u64> = bytes
-            .chunks_exact(8)
-            .map(|t| t.iter().rev().fold(0, |sum, &b| sum << 8 | u64::from(b)))
-            .collect();
-        let ms = |i: usize| ticks[i + 1].saturating_sub(ticks[i]) as f64 * f64::from(self.ns) / 1e6;
-        Ok([0, 2, 4].map(ms))
+    /// Milliseconds of each span.
+    pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<f64>, GpuError> {
+        let ticks: Vec<u64> = read_items(gpu, &self.readable)?;
+        let ms = |t: &[u64]| t[1].saturating_sub(t[0]) as f64 * f64::from(self.ns) / 1e6;
+        Ok(ticks.chunks_exact(2).map(ms).collect())
     }
 }
 
@@ -128,7 +125,8 @@ pub fn median(values: &mut [f64]) -> Option<f64> {
     Some(lower + (upper - lower) * 0.5)
 }
 
-pub(crate) fn medians(all: &[StageTimes]) -> StageTimes {
+/// The median of each stage; of what frames take that begin with nothing, none.
+pub fn medians(all: &[StageTimes]) -> StageTimes {
     let of = |field: fn(&StageTimes) -> f64| {
         let mut values: Vec<f64> = all.iter().map(field).collect();
         median(&mut values).unwrap_or_default()

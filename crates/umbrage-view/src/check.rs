@@ -15,6 +15,8 @@ use umbrage_lab::lab::{Lab, Method};
 use umbrage_lab::stage::{Stage, StageLight};
 use umbrage_truth::{ErrorMap, Oracle, Verdicts};
 
+use crate::moment::Moment;
+
 /// What came out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Checked {
@@ -37,9 +39,11 @@ struct Running {
 #[derive(Debug, Default)]
 pub(crate) struct Check {
     oracle: Arc<OnceLock<Oracle>>,
+    /// The stage's time that it knows.
+    time_s: f64,
     running: Option<Running>,
-    /// Of what it judged.
-    of: Option<(View, Vec<bool>)>,
+    /// What it judged.
+    of: Option<Moment>,
     found: Option<Checked>,
 }
 
@@ -53,17 +57,19 @@ impl Check {
         view: &View,
         method: Method,
     ) -> Result<(), GpuError> {
+        if self.time_s != stage.time_s {
+            (self.time_s, self.oracle) = (stage.time_s, Arc::default());
+        }
         let silent = lab.muted.clone();
         lab.prepare(stage, lights, view, method);
         let mask = lab.mask(stage, lights, view)?;
         let skipped: Vec<bool> = (0..lights.len())
             .map(|light| matches!(lab.path(light), LightPath::Skipped(_)))
             .collect();
-        let asked: Vec<Light> = lights
-            .iter()
-            .zip(&silent)
-            .map(|(light, &silent)| if silent { NONE } else { light.light })
-            .collect();
+        let mut asked: Vec<Light> = lights.iter().map(|light| light.light).collect();
+        for &light in &silent {
+            asked[light] = NONE;
+        }
         let (done, near) = (Arc::new(AtomicU64::new(0)), lab.near_clip());
         let (send, result) = channel();
         let (stage, oracle) = (Arc::clone(stage), Arc::clone(&self.oracle));
@@ -83,7 +89,11 @@ impl Check {
             });
         });
         self.found = None;
-        self.of = Some((*view, silent));
+        self.of = Some(Moment {
+            view: *view,
+            silent,
+            time_s: self.time_s,
+        });
         self.running = Some(Running {
             done,
             pixels: u64::from(view.size[0]) * u64::from(view.size[1]),
@@ -113,11 +123,8 @@ impl Check {
     }
 
     /// What was found, if this is what was judged.
-    pub(crate) fn found(&self, view: &View, silent: &[bool]) -> Option<&Checked> {
-        let same = self
-            .of
-            .as_ref()
-            .is_some_and(|of| of.0 == *view && of.1 == silent);
+    pub(crate) fn found(&self, moment: &Moment) -> Option<&Checked> {
+        let same = self.of.as_ref() == Some(moment);
         self.found.as_ref().filter(|_| same)
     }
 }

@@ -9,7 +9,7 @@ use crate::table::Row;
 use crate::viewer::Viewer;
 
 /// Every key, and what it does.
-pub(crate) const KEYS: [(&str, &str); 16] = [
+pub(crate) const KEYS: [(&str, &str); 17] = [
     ("W A S D", "fly ahead, left, back, right"),
     ("Q E", "fly down, up"),
     ("Shift", "with them: faster"),
@@ -25,6 +25,7 @@ pub(crate) const KEYS: [(&str, &str); 16] = [
     ),
     ("M", "mute the chosen light"),
     ("C", "all lights shine again"),
+    ("T", "time goes on, or stands"),
     ("O", "compare with the oracle, wrong pixels in red"),
     ("P", "expose the picture anew"),
     ("L", "light list"),
@@ -59,10 +60,19 @@ pub(crate) fn apply(viewer: &mut Viewer, picture: &Response, rows: &[Row]) -> Re
     if picture.clicked() {
         ctx.memory_mut(egui::Memory::stop_text_input);
     }
-    match ctx.egui_wants_keyboard_input() {
-        true => Ok(()),
-        false => keys(viewer, ctx, rows),
+    if !ctx.egui_wants_keyboard_input() {
+        keys(viewer, ctx, rows)?;
     }
+    if viewer.plays {
+        viewer.set_time(viewer.stage.time_s + f64::from(ctx.input(seconds)));
+        ctx.request_repaint();
+    }
+    Ok(())
+}
+
+/// Since the last frame; less where that was long ago.
+fn seconds(input: &egui::InputState) -> f32 {
+    input.stable_dt.min(0.1)
 }
 
 fn keys(viewer: &mut Viewer, ctx: &egui::Context, rows: &[Row]) -> Result<(), GpuError> {
@@ -76,7 +86,7 @@ fn keys(viewer: &mut Viewer, ctx: &egui::Context, rows: &[Row]) -> Result<(), Gp
             ahead: axis(Key::W, Key::S),
             fast: input.modifiers.shift,
         };
-        (push, input.stable_dt.min(0.1))
+        (push, seconds(input))
     });
     if push
         != (Push {
@@ -114,6 +124,9 @@ fn keys(viewer: &mut Viewer, ctx: &egui::Context, rows: &[Row]) -> Result<(), Gp
     }
     if pressed(Key::C) {
         viewer.mix.clear();
+    }
+    if pressed(Key::T) {
+        viewer.plays = !viewer.plays && viewer.can_play();
     }
     if pressed(Key::P) {
         viewer.expose();

@@ -58,9 +58,10 @@ impl Costs {
             return Ok(());
         }
         let turn = self.turn(|light| !is_skipped(lab, light));
-        let times = lab.time_lights(rendering, stage, lights, view, &turn)?;
-        for (light, us) in turn.into_iter().zip(times) {
-            self.put(light, us);
+        let once: Vec<(usize, u32)> = turn.into_iter().map(|light| (light, 1)).collect();
+        let costs = lab.time_lights(rendering, stage, lights, view, &once)?;
+        for ((light, _), cost) in once.into_iter().zip(costs.into_iter().flatten()) {
+            self.put(light, cost.total_us);
         }
         Ok(())
     }

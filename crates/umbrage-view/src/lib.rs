@@ -14,6 +14,7 @@ mod costs;
 pub mod debug_view;
 mod lines;
 pub mod mix;
+mod moment;
 mod overlay;
 mod panel;
 mod screen;

@@ -1,7 +1,6 @@
 //! Pictures that are made once the camera rests: counts in false colours, and marks on wrong pixels.
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
-use umbrage_core::View;
 use umbrage_lab::gpu::GpuError;
 use umbrage_lab::heat::{Heat, false_colours};
 use umbrage_lab::lab::{Lab, Method};
@@ -9,13 +8,13 @@ use umbrage_lab::stage::{Stage, StageLight};
 
 use crate::check::{Checked, marks};
 use crate::debug_view::DebugView;
+use crate::moment::Moment;
 
 /// What a picture was made of.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Of {
     pub(crate) shown: DebugView,
-    pub(crate) view: View,
-    pub(crate) silent: Vec<bool>,
+    pub(crate) moment: Moment,
 }
 
 /// A picture over the whole window.
@@ -51,8 +50,8 @@ impl Overlay {
         lights: &[StageLight],
         method: Method,
     ) -> Result<Self, GpuError> {
-        let counts = lab.heat(stage, lights, &of.view, method, heat)?;
-        let size = of.view.size.map(|side| side as usize);
+        let counts = lab.heat(stage, lights, &of.moment.view, method, heat)?;
+        let size = of.moment.view.size.map(|side| side as usize);
         let image = ColorImage::from_rgb(size, &false_colours(&counts));
         Ok(Self {
             texture: ctx.load_texture("heat map", image, TextureOptions::NEAREST),

@@ -102,6 +102,25 @@ fn figures(viewer: &mut Viewer, ui: &mut Ui, rows: &[Row]) {
         ui.weak(format!("speed {:.3} m/s", viewer.camera.speed_m_s));
         ui.weak("H: keys");
     });
+    if viewer.can_play() {
+        time(viewer, ui);
+    }
+}
+
+/// Of what moves.
+fn time(viewer: &mut Viewer, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        let does = if viewer.plays { "stop" } else { "play" };
+        if ui.button(format!("{does} (T)")).clicked() {
+            viewer.plays ^= true;
+        }
+        let mut time_s = viewer.stage.time_s;
+        let shown = egui::DragValue::new(&mut time_s).suffix(" s").speed(0.01);
+        if ui.add(shown.fixed_decimals(2)).changed() {
+            viewer.set_time(time_s);
+        }
+        ui.weak(format!("moving instances: {}", viewer.stage.actors.len()));
+    });
 }
 
 fn debug_views(viewer: &mut Viewer, ui: &mut Ui) {

@@ -16,6 +16,7 @@ use crate::costs::Costs;
 use crate::debug_view::DebugView;
 use crate::lines::{Lines, ZFAIL, ZPASS, bounds};
 use crate::mix::Mix;
+use crate::moment::{Moment, follow, followed};
 use crate::overlay::{Of, Overlay, heat};
 use crate::screen::{Picture, Screen};
 use crate::table::Order;
@@ -52,7 +53,10 @@ pub(crate) struct Viewer {
     exposure: Option<f32>,
     lines_of: Option<LinesOf>,
     /// What the last frame drew.
-    drawn: Option<(View, Vec<bool>)>,
+    drawn: Option<Moment>,
+    /// Whether time goes on.
+    pub(crate) plays: bool,
+    followed: Vec<Option<usize>>,
 }
 
 /// What the lines were made of.
@@ -60,6 +64,7 @@ pub(crate) struct Viewer {
 struct LinesOf {
     shown: DebugView,
     chosen: Option<usize>,
+    time_s: f64,
     /// Volume and path of each light drawn.
     lights: Vec<(usize, u64, bool)>,
 }
@@ -90,6 +95,7 @@ impl Viewer {
             camera: FlyCamera::new(view, speed),
             mix,
             costs: Costs::new(lights.len()),
+            followed: followed(&stage, &lights),
             stage: Arc::new(stage),
             lights,
             method: options.method,
@@ -111,6 +117,7 @@ impl Viewer {
             exposure: None,
             lines_of: None,
             drawn: None,
+            plays: false,
         })
     }
 
@@ -142,10 +149,32 @@ impl Viewer {
     /// Compares the view with the oracle, and shows the outcome when it is there.
     pub(crate) fn start_check(&mut self) -> Result<(), GpuError> {
         self.shown = DebugView::Wrong;
+        self.plays = false;
         self.aside.muted = self.mix.silent();
         let (view, method) = (self.camera.view, self.method);
         let (stage, lights) = (&self.stage, &self.lights);
         (self.check).start(&mut self.aside, stage, lights, &view, method)
+    }
+
+    /// Whether anything of the scene moves with time.
+    pub(crate) fn can_play(&self) -> bool {
+        let rig = self.stage.scene.rig.as_ref();
+        rig.is_some_and(|rig| rig.moving().contains(&true))
+    }
+
+    /// Moves what moves to where it is at a time in seconds; it stands while the oracle looks.
+    pub(crate) fn set_time(&mut self, time_s: f64) {
+        let Some(stage) = Arc::get_mut(&mut self.stage) else {
+            return;
+        };
+        let before = stage.time_s;
+        if let Err(error) = stage.set_time(time_s) {
+            self.trouble = error.to_string();
+            self.plays = false;
+            // Where everything stood well it does again.
+            let _ = stage.set_time(before);
+        }
+        follow(stage, &self.followed, &mut self.lights);
     }
 
     /// Takes input, draws a frame into `target`, and gives what the window is to do.
@@ -192,8 +221,8 @@ impl Viewer {
 
     fn draw_stage(&mut self, stage: &Stage, lights: &[StageLight]) -> Result<(), GpuError> {
         let view = &{ self.camera.view };
-        let silent = self.mix.silent();
-        self.lab.muted.clone_from(&silent);
+        let now = self.of().moment;
+        self.lab.muted.clone_from(&now.silent);
         self.lab.frames.clear();
         let rendering = &mut self.rendering;
         (self.lab).draw(rendering, stage, lights, view, Instant::now())?;
@@ -201,7 +230,6 @@ impl Viewer {
         if self.exposure.is_none() {
             self.exposure = Some(self.lab.lit(rendering)?.exposure());
         }
-        let now = (*view, silent);
         let rests = self.drawn.as_ref() == Some(&now);
         if !rests {
             self.costs.stale();
@@ -217,8 +245,11 @@ impl Viewer {
     fn of(&self) -> Of {
         Of {
             shown: self.shown,
-            view: self.camera.view,
-            silent: self.mix.silent(),
+            moment: Moment {
+                view: self.camera.view,
+                silent: self.mix.silent(),
+                time_s: self.stage.time_s,
+            },
         }
     }
 
@@ -239,7 +270,7 @@ impl Viewer {
         }
         self.overlay = None;
         if let Some(heat) = heat(self.shown).filter(|_| rests && self.trouble.is_empty()) {
-            self.aside.muted.clone_from(&of.silent);
+            self.aside.muted.clone_from(&of.moment.silent);
             let (ctx, aside) = (&self.ctx, &mut self.aside);
             match Overlay::counted(ctx, of, heat, aside, stage, lights, self.method) {
                 Ok(overlay) => self.overlay = Some(overlay),
@@ -247,7 +278,7 @@ impl Viewer {
                 Err(error) => return Err(error),
             }
         } else if self.shown == DebugView::Wrong
-            && let Some(found) = self.check.found(&of.view, &of.silent)
+            && let Some(found) = self.check.found(&of.moment)
         {
             self.overlay = Some(Overlay::marked(&self.ctx, of, found));
         }
@@ -277,6 +308,7 @@ impl Viewer {
         let of = LinesOf {
             shown,
             chosen,
+            time_s: stage.time_s,
             lights: (0..lights.len()).filter(shines).map(stamp).collect(),
         };
         if self.lines_of.as_ref() == Some(&of) {

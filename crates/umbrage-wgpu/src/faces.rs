@@ -24,6 +24,8 @@ pub enum CountStep {
     Raise,
     /// Those that lower it by one.
     Lower,
+    /// All of them, before the surface and behind it: what there is to rasterise. For measuring.
+    Cover,
 }
 
 /// What faces do where they count.
@@ -52,12 +54,15 @@ impl ShadowRenderer {
     /// the colour targets of `options`.
     pub fn faces(&self, device: &Device, options: &FaceOptions<'_>) -> VolumeFaces {
         let shader = self.shared().shader();
-        let [nearer, not_nearer] = [shader.depth.nearer(), shader.depth.not_nearer()];
-        let raise = options.step == CountStep::Raise;
-        let [fronts, backs] = [Face::Back, Face::Front];
-        let [in_front, behind, behind_reversed] = match raise {
-            true => [fronts, backs, fronts],
-            false => [backs, fronts, backs],
+        let [fronts, backs] = [Face::Back, Face::Front].map(Some);
+        let [in_front, behind, behind_reversed] = match options.step {
+            CountStep::Raise => [fronts, backs, fronts],
+            CountStep::Lower => [backs, fronts, backs],
+            CountStep::Cover => [None; 3],
+        };
+        let [nearer, not_nearer] = match options.step {
+            CountStep::Cover => [CompareFunction::Always; 2],
+            _ => [shader.depth.nearer(), shader.depth.not_nearer()],
         };
         let build =
             |entry, culled, compare| pipeline(device, shader, options, entry, culled, compare);
@@ -89,7 +94,7 @@ fn pipeline(
     shader: &VolumeShader,
     options: &FaceOptions<'_>,
     entry_point: &str,
-    culled: Face,
+    culled: Option<Face>,
     depth_compare: CompareFunction,
 ) -> RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -105,7 +110,7 @@ fn pipeline(
             buffers: &[],
         },
         primitive: wgpu::PrimitiveState {
-            cull_mode: Some(culled),
+            cull_mode: culled,
             unclipped_depth: shader.depth_clamp,
             ..wgpu::PrimitiveState::default()
         },

@@ -138,6 +138,7 @@ pub enum RenderError {
 
 /// What is drawn in one frame.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Frame<'a> {
     /// The eye.
     pub view: &'a View,
@@ -151,8 +152,27 @@ pub struct Frame<'a> {
     pub culls: Culls,
 }
 
+impl<'a> Frame<'a> {
+    /// With every step that skips work.
+    pub fn new(
+        view: &'a View,
+        lights: &'a [Light],
+        volumes: &'a Volumes,
+        plan: &'a FramePlan,
+    ) -> Self {
+        Self {
+            view,
+            lights,
+            volumes,
+            plan,
+            culls: Culls::EVERY,
+        }
+    }
+}
+
 /// Bytes that one [`ShadowRenderer::prepare`](crate::ShadowRenderer::prepare) handed to the queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Uploaded {
     /// Quads and caps.
     pub volume_bytes: u64,

@@ -16,7 +16,7 @@
 //!
 //! ```no_run
 //! # use umbrage_core::frame::{FramePlan, PlanOptions};
-//! # use umbrage_core::{Culls, Light, View, volume::Volumes, world::World};
+//! # use umbrage_core::{Light, View, volume::Volumes, world::World};
 //! # use umbrage_wgpu::{Frame, RenderError, ShadowRenderer};
 //! # fn frame(device: &wgpu::Device, queue: &wgpu::Queue, encoder: &mut wgpu::CommandEncoder,
 //! #     depth: &wgpu::TextureView, renderer: &mut ShadowRenderer, world: &World, lights: &[Light],
@@ -24,10 +24,10 @@
 //! #     -> Result<(), RenderError> {
 //! # fn your_depth_pass(_: &mut wgpu::CommandEncoder) {}
 //! # fn your_light_pass(_: &mut wgpu::CommandEncoder) -> wgpu::RenderPass<'_> { todo!() }
-//! let (mut plan, culls) = (FramePlan::default(), Culls::EVERY);
+//! let mut plan = FramePlan::default();
 //! plan.make(world, lights, volumes, view, &PlanOptions::default());
 //! renderer.upload_world(device, queue, world)?; // what changed of it, if anything
-//! let frame = Frame { view, lights, volumes, plan: &plan, culls };
+//! let frame = Frame::new(view, lights, volumes, &plan);
 //! renderer.prepare(device, queue, &frame)?;
 //! your_depth_pass(encoder);
 //! renderer.find_receivers(device, encoder, depth, None);

@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use umbrage_core::Light as CoreLight;
 use umbrage_core::frame::bounds::light_rect;
 use umbrage_core::frame::{FramePlan, PathRule, PlanOptions};
 use umbrage_core::volume::{VolumeBuilder, Volumes};
-use umbrage_core::{Culls, Light as CoreLight};
 use umbrage_wgpu::{CLIP_WGSL, Frame, RendererOptions, SharedShadows, ViewShadows, WorldWindows};
 use wgpu::{
     BindGroupLayout, CommandEncoder, DepthStencilState, Device, Features, PrimitiveState, Queue,
@@ -137,13 +137,7 @@ impl Shadows {
             stats.count(&state.plan);
             stats.plan_ms += ms_since(start);
             let start = Instant::now();
-            let frame = Frame {
-                view: &view.core,
-                lights,
-                volumes: &self.volumes,
-                plan: &state.plan,
-                culls: Culls::EVERY,
-            };
+            let frame = Frame::new(&view.core, lights, &self.volumes, &state.plan);
             state.view = Some(view);
             let uploaded = (state.gpu).prepare(device, queue, &self.shared, &frame, view.origin)?;
             stats.uploaded_bytes += uploaded.volume_bytes + uploaded.other_bytes;

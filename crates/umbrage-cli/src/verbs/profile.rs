@@ -13,6 +13,7 @@ mod model;
 mod pictures;
 mod rows;
 mod trial;
+mod verify;
 
 use std::time::SystemTime;
 
@@ -31,7 +32,7 @@ use crate::setting::Setting;
 use measure::Base;
 use trial::Trials;
 
-/// With `--verify` lights are drawn in so many times the rounds.
+/// With `--verify` there are so many times the rounds.
 const PATIENCE: usize = 3;
 
 /// Measures, advises, writes.
@@ -55,15 +56,13 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<(), CliError> {
     lab.culls = common.run.culls();
     let steps = Steps::new(common.results.quiet, 4);
     let begun = SystemTime::now();
-    let rounds = common.run.repeat.get();
-    steps.now(&args.scene, "measure lights");
     // What is compared is measured alike.
-    let gpu_rounds = if args.verify {
-        PATIENCE * rounds
-    } else {
-        rounds
+    let rounds = match args.verify {
+        true => PATIENCE * common.run.repeat.get(),
+        false => common.run.repeat.get(),
     };
-    let base = Base::measure(&mut lab, &setting, method, [rounds, gpu_rounds])?;
+    steps.now(&args.scene, "measure lights");
+    let mut base = Base::measure(&mut lab, &setting, method, rounds)?;
     steps.step();
     let mut report = ProfileReport {
         command: command_line(),
@@ -89,7 +88,7 @@ pub(crate) fn run(args: &ProfileArgs) -> Result<(), CliError> {
     };
     if args.output.is_some() {
         steps.now(&args.scene, "pictures");
-        report.pictures = pictures::pictures(&base, &setting, &report)?;
+        report.pictures = pictures::pictures(&lab, &mut base, &setting, &report)?;
     }
     steps.step();
     steps.now(&args.scene, "advice");

@@ -17,6 +17,7 @@ use crate::volume::{Chain, ChainTriangle, Part, Volumes};
 /// then are not at the part's own reference, the eighth is set, and they are set to the reference:
 /// that point is in shadow, whatever the other parts say.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PartPlan {
     /// The number it is drawn under: the light's own for the first part, for others one after those
     /// of all lights.

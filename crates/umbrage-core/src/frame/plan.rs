@@ -129,6 +129,7 @@ impl LightPath {
 
 /// One light of a plan.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LightPlan {
     /// How it is drawn.
     pub path: LightPath,
@@ -152,6 +153,7 @@ pub struct LightPlan {
 
 /// One view's plan for all lights.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct FramePlan {
     /// One entry a light, skipped ones included.
     pub lights: Vec<LightPlan>,

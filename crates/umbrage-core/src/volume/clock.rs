@@ -26,6 +26,7 @@ impl Clock for () {
 
 /// Microseconds of one light's build on one thread, stage by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BuildTimes {
     /// Triangles in its range found.
     pub query_us: f64,
@@ -57,19 +58,6 @@ impl BuildTimes {
             ("counters", self.counters_us),
             ("emission", self.emission_us),
         ]
-    }
-
-    /// The least of each stage: what disturbs a measurement only adds to it.
-    #[must_use]
-    pub fn least(&self, other: &Self) -> Self {
-        Self {
-            query_us: self.query_us.min(other.query_us),
-            facing_us: self.facing_us.min(other.facing_us),
-            hidden_us: self.hidden_us.min(other.hidden_us),
-            layers_us: self.layers_us.min(other.layers_us),
-            counters_us: self.counters_us.min(other.counters_us),
-            emission_us: self.emission_us.min(other.emission_us),
-        }
     }
 }
 

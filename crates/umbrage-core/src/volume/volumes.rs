@@ -14,6 +14,7 @@ use crate::world::{Seen, World};
 
 /// A part of a light whose layers are too many for the mask in one go: a closed volume of its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Part {
     /// Its silhouette quads, in [`Volumes::quads`].
     pub quads: Range<u32>,
@@ -56,6 +57,7 @@ pub struct LightVolume {
 /// What is built is kept: whoever changes quads or chains by hand starts the next build from a new
 /// one.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Volumes {
     /// One entry a light.
     pub lights: Vec<LightVolume>,

@@ -153,6 +153,7 @@ pub struct WorldReport {
 
 /// Milliseconds a build stage took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct BuildTimes {
     /// Equal positions found.
     pub weld: f64,

@@ -5,18 +5,19 @@ use std::borrow::Cow;
 
 use bytemuck::{Pod, Zeroable};
 use umbrage_core::View;
+use umbrage_core::frame::FramePlan;
 use umbrage_core::frame::bounds::Rect;
-use umbrage_wgpu::VolumeColor;
+use umbrage_wgpu::{CountStep, FaceOptions, ShadowRenderer, VolumeColor, VolumeFaces};
 use wgpu::ShaderStages;
 
-use super::{Meter, encoder};
+use super::encoder;
 use crate::binding::{self, bind, buffer, layout};
-use crate::gbuffer::whole;
+use crate::gbuffer::{texture, whole};
 use crate::gpu::{Gpu, GpuError};
 use crate::lab::Lab;
 use crate::light_pass::{LightDraw, LightPass, LitBy};
 use crate::readback::{read_items, read_texture, record_copy};
-use crate::run::FROM_DARK;
+use crate::run::{FROM_DARK, Run, light_pass};
 use crate::stage::{Stage, StageLight};
 
 /// What one light draws in a view.
@@ -24,6 +25,8 @@ use crate::stage::{Stage, StageLight};
 pub struct LightCounts {
     /// Fragments of its volume before the surface.
     pub volume_fragments: u64,
+    /// All fragments of its volume, those behind the surface too.
+    pub volume_covered: u64,
     /// Samples that its light draw covers, lit or not.
     pub light_fragments: u64,
     /// Of these, samples shaded: those that the stencil leaves.
@@ -41,8 +44,13 @@ pub struct LightCounts {
 /// Counts of lights, drawn one by one.
 #[derive(Debug)]
 pub struct Counter {
-    meter: Meter,
+    gpu: Gpu,
+    plan: FramePlan,
+    run: Run,
+    shadowed: LightPass,
+    covered: VolumeFaces,
     unshadowed: LightPass,
+    target: wgpu::Texture,
     sum: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     ranges: Vec<f32>,
@@ -92,7 +100,7 @@ fn sum(@builtin(workgroup_id) row: vec3u, @builtin(local_invocation_index) lane:
 impl Lab {
     /// A counter of what `volumes` and `plan` hold; light shows where it does at this exposure.
     pub fn counter(
-        &mut self,
+        &self,
         stage: &Stage,
         lights: &[StageLight],
         view: &View,
@@ -103,21 +111,59 @@ impl Lab {
             ..light.clone()
         };
         let lights: Vec<StageLight> = lights.iter().map(scaled).collect();
-        let (draw, color) = (LightDraw::Count, VolumeColor::Fragments);
-        let mut meter = self.new_meter(stage, &lights, view, draw, color)?;
-        let gpu = &meter.gpu;
-        let mut unshadowed = LightPass::new(gpu, &meter.run.shadows, draw, LitBy::Everything);
-        let given = meter.run.technique(gpu, stage, &lights, self.frame(view));
-        unshadowed.prepare(&given.1);
-        let (sum, layout) = pipeline(gpu);
+        let draw = LightDraw::Count;
+        let gpu = self.gpu().clone();
+        let mut run = self.run(stage, view, self.method, draw, VolumeColor::Fragments)?;
+        run.shadows
+            .prepare(&gpu.device, &gpu.queue, &self.frame(view))?;
+        let given = run.technique(&gpu, stage, &lights, self.frame(view)).1;
+        let [shadowed, unshadowed] = [LitBy::Stencil, LitBy::Everything].map(|lit_by| {
+            let mut light = LightPass::new(&gpu, given.shadows, draw, lit_by);
+            light.prepare(&given);
+            light
+        });
+        let covered = covering(&gpu, &run.shadows);
+        let mut encoder = encoder(&gpu);
+        run.record_surface(&gpu, &mut encoder, None);
+        gpu.queue.submit([encoder.finish()]);
+        let usage = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+        let (sum, layout) = pipeline(&gpu);
         Ok(Counter {
+            target: texture(&gpu, "one light", view.size, draw.format(), usage),
+            plan: self.plan.clone(),
+            gpu,
+            run,
+            shadowed,
+            covered,
             unshadowed,
             sum,
             layout,
             ranges: lights.iter().map(|l| l.light.range).collect(),
-            meter,
         })
     }
+}
+
+/// Adds one to red for each fragment of a volume, wherever it is.
+fn covering(gpu: &Gpu, shadows: &ShadowRenderer) -> VolumeFaces {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let red = wgpu::ColorTargetState {
+        format: LightDraw::Count.format(),
+        blend: Some(wgpu::BlendState {
+            color: add,
+            alpha: add,
+        }),
+        write_mask: wgpu::ColorWrites::RED,
+    };
+    let options = FaceOptions {
+        step: CountStep::Cover,
+        targets: &[Some(red)],
+        stencil: wgpu::StencilFaceState::IGNORE,
+    };
+    shadows.faces(&gpu.device, &options)
 }
 
 fn pipeline(gpu: &Gpu) -> (wgpu::ComputePipeline, wgpu::BindGroupLayout) {
@@ -165,8 +211,8 @@ impl Counter {
     }
 
     fn chunk(&self, lights: &[usize]) -> Result<Vec<LightCounts>, GpuError> {
-        let gpu = &self.meter.gpu;
-        let scissor = |light: usize| self.meter.plan.lights[light].scissor;
+        let gpu = &self.gpu;
+        let scissor = |light: usize| self.plan.lights[light].scissor;
         let mut tasks = vec![0u8; (2 * lights.len() * STRIDE).max(STRIDE)];
         for (place, task) in tasks.chunks_exact_mut(STRIDE).enumerate() {
             let Some(&light) = lights.get(place / 2) else {
@@ -187,7 +233,7 @@ impl Counter {
             contents: &vec![0; (lights.len() * SUMS * 4).max(4)],
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         });
-        let counted = whole(&self.meter.target);
+        let counted = whole(&self.target);
         let mut encoder = encoder(gpu);
         for (i, &light) in lights.iter().enumerate() {
             if scissor(light).is_empty() {
@@ -222,6 +268,7 @@ impl Counter {
         Ok(counts
             .map(|(&light, sums)| LightCounts {
                 volume_fragments: u64::from(sums[0]),
+                volume_covered: u64::from(sums[4]),
                 shaded_samples: u64::from(sums[1]),
                 lit_pixels: u64::from(sums[2]),
                 range_needed_m: match self.ranges[light] {
@@ -236,28 +283,31 @@ impl Counter {
             .collect())
     }
 
-    /// Draws one light into the target; its volume only with its shadows.
+    /// Draws one light into the target: its volume as far as it counts, and the light that leaves; or
+    /// all that its volume covers, and the light without shadows.
     fn draw(&self, encoder: &mut wgpu::CommandEncoder, light: usize, shadowed: bool) {
-        let Meter { run, plan, .. } = &self.meter;
-        let mut pass = self.meter.pass(encoder, FROM_DARK, None);
+        let (shadows, plan) = (&self.run.shadows, &self.plan);
+        let mut pass = light_pass(encoder, &self.run.targets, &self.target, FROM_DARK);
         if shadowed {
-            self.meter.record_volume(&mut pass, light);
-            self.meter.record_light(&mut pass, light);
-        } else {
-            run.shadows
-                .record_light(&mut pass, plan, light, |pass, number, _| {
-                    self.unshadowed.draw(pass, &run.shadows, number, None);
-                });
+            shadows.record_volume(&mut pass, plan, light);
         }
+        shadows.record_light(&mut pass, plan, light, |pass, number, plan| {
+            if shadowed {
+                self.shadowed.draw(pass, shadows, number, None);
+            } else {
+                shadows.record_faces(pass, &self.covered, number, plan);
+                self.unshadowed.draw(pass, shadows, number, None);
+            }
+        });
     }
 
     /// Volume fragments of one light at each pixel.
     pub fn overdraw(&self, light: usize) -> Result<Vec<f32>, GpuError> {
-        let mut encoder = encoder(&self.meter.gpu);
+        let mut encoder = encoder(&self.gpu);
         self.draw(&mut encoder, light, true);
-        self.meter.gpu.queue.submit([encoder.finish()]);
+        self.gpu.queue.submit([encoder.finish()]);
         let first = |t: &[u8]| half::f16::from_le_bytes([t[0], t[1]]).to_f32();
-        let bytes = read_texture(&self.meter.gpu, &self.meter.target)?;
+        let bytes = read_texture(&self.gpu, &self.target)?;
         Ok(bytes.chunks_exact(8).map(first).collect())
     }
 }

@@ -1,102 +1,134 @@
-//! GPU time of each light, by timestamps at the bounds of its passes.
+//! GPU time of each light, drawn alone.
 
-use super::{Meter, encoder};
+use umbrage_core::View;
+
+use crate::gbuffer::texture;
 use crate::gpu::GpuError;
-use crate::readback::read_items;
-use crate::run::FROM_DARK;
+use crate::lab::Lab;
+use crate::light_pass::HDR;
+use crate::rendering::Rendering;
+use crate::stage::{Stage, StageLight};
+use crate::timer::Timer;
 
-/// GPU time of one light, in microseconds, without that of an empty pass.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// GPU time of one light, in microseconds, without that of a pass as such.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GpuCost {
-    /// Its volume, counted in the stencil.
+    /// Its volume, counted in the stencil; zero for methods that do not draw volume by volume.
     pub volume_us: f64,
-    /// Its light draw, and the stencil cleaned.
-    pub light_us: f64,
-}
-
-impl Default for GpuCost {
-    /// Nothing was measured yet: more than anything.
-    fn default() -> Self {
-        Self {
-            volume_us: f64::INFINITY,
-            light_us: f64::INFINITY,
-        }
-    }
+    /// All that is drawn for it.
+    pub total_us: f64,
 }
 
 impl GpuCost {
-    /// Volume and light.
-    pub fn total_us(&self) -> f64 {
-        self.volume_us + self.light_us
+    /// All but the volume: its light draw, the stencil cleaned.
+    pub fn light_us(&self) -> f64 {
+        (self.total_us - self.volume_us).max(0.0)
     }
 }
 
-/// Lights an encoder: their timestamps fit one query set.
-const CHUNK: usize = 256;
+/// Lights an encoder.
+const CHUNK: usize = 64;
 /// Empty passes before them.
 const EMPTY: usize = 8;
 
-impl Meter {
-    /// Draws each of the lights numbered `lights` once, one after the other, and keeps in `least`,
-    /// their costs in the same order, the least of what was there and what it took: what disturbs a
-    /// measurement only adds to it. Says whether the device has timestamps; without, nothing is done.
-    pub fn round(&mut self, lights: &[usize], least: &mut [GpuCost]) -> Result<bool, GpuError> {
-        let Some(ns) = self.gpu.timestamp_ns else {
-            return Ok(false);
-        };
-        for (lights, least) in lights.chunks(CHUNK).zip(least.chunks_mut(CHUNK)) {
-            let us = self.chunk(lights, f64::from(ns) / 1e3)?;
-            let empty = us[..EMPTY].iter().copied().fold(f64::INFINITY, f64::min);
-            let net = |us: f64| (us - empty).max(0.0);
-            for (cost, us) in least.iter_mut().zip(us[EMPTY..].chunks_exact(2)) {
-                cost.volume_us = cost.volume_us.min(net(us[0]));
-                cost.light_us = cost.light_us.min(net(us[1]));
-            }
-        }
-        Ok(true)
-    }
-
-    /// Microseconds of the empty passes, then of volume and light of each light.
-    fn chunk(&self, lights: &[usize], tick_us: f64) -> Result<Vec<f64>, GpuError> {
-        let device = &self.gpu.device;
-        let passes = EMPTY + 2 * lights.len();
-        let queries = 2 * passes as u32;
-        let set = device.create_query_set(&wgpu::QuerySetDescriptor {
-            label: Some("profile"),
-            ty: wgpu::QueryType::Timestamp,
-            count: queries,
-        });
-        let buffer = |label, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: u64::from(queries) * 8,
-                usage: usage | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let resolve = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let resolved = buffer("profile timestamps", resolve);
-        let readable = buffer("profile timestamps", wgpu::BufferUsages::MAP_READ);
-        let mut encoder = encoder(&self.gpu);
-        drop(self.pass(&mut encoder, FROM_DARK, None));
-        for number in 0..passes {
-            let timestamps = wgpu::RenderPassTimestampWrites {
-                query_set: &set,
-                beginning_of_pass_write_index: Some(2 * number as u32),
-                end_of_pass_write_index: Some(2 * number as u32 + 1),
+impl Lab {
+    /// GPU time of each of `numbers`, lights of the last frame, which [`Lab::draw`] drew: each is
+    /// drawn alone in a pass of its own, once, and in another as often as is said beside its number,
+    /// one after the other; its volume likewise, where the method draws volume by volume. What the
+    /// further times took counts, so a pass as such costs nothing, and the more times, the less a
+    /// disturbance matters. Of lights drawn once, and of methods that can but do so, what an empty
+    /// pass takes is subtracted. Nothing on adapters without timestamps. Lights that the frame skipped
+    /// have next to no cost, which need not be asked for.
+    pub fn time_lights(
+        &self,
+        rendering: &mut Rendering,
+        stage: &Stage,
+        lights: &[StageLight],
+        view: &View,
+        numbers: &[(usize, u32)],
+    ) -> Result<Option<Vec<GpuCost>>, GpuError> {
+        let gpu = self.gpu();
+        let none = wgpu::TextureUsages::empty();
+        let scratch = texture(gpu, "one light", view.size, HDR, none);
+        let mut costs = Vec::with_capacity(numbers.len());
+        for numbers in numbers.chunks(CHUNK) {
+            let Some(timer) = Timer::new(gpu, (EMPTY + 4 * numbers.len()) as u32) else {
+                return Ok(None);
             };
-            let mut pass = self.pass(&mut encoder, wgpu::LoadOp::Load, Some(timestamps));
-            match number.checked_sub(EMPTY).map(|i| (lights[i / 2], i % 2)) {
-                None => {}
-                Some((light, 0)) => self.record_volume(&mut pass, light),
-                Some((light, _)) => self.record_light(&mut pass, light),
+            let (technique, given) =
+                (rendering.run).technique(gpu, stage, lights, self.frame(view));
+            let mut encoder = super::encoder(gpu);
+            let e = &mut encoder;
+            let mut marks = 0..;
+            let mut mark = |encoder: &mut wgpu::CommandEncoder| {
+                timer.mark(encoder, marks.next().unwrap_or_default());
+            };
+            for _ in 0..EMPTY {
+                mark(e);
+                technique.record_again(&given, e, 0..0, &scratch, 1)?;
+                mark(e);
+            }
+            let mut drawn = Vec::with_capacity(2 * numbers.len());
+            for &(number, times) in numbers {
+                let light = number..number + 1;
+                for times in [1, times] {
+                    mark(e);
+                    let volume =
+                        technique.record_volumes_again(&given, e, light.clone(), &scratch, times);
+                    mark(e);
+                    mark(e);
+                    let whole =
+                        technique.record_again(&given, e, light.clone(), &scratch, times)?;
+                    mark(e);
+                    drawn.push([volume, whole]);
+                }
+            }
+            timer.resolve(e);
+            gpu.queue.submit([encoder.finish()]);
+            let us: Vec<f64> = timer.read(gpu)?.iter().map(|ms| ms * 1e3).collect();
+            let (empty, us) = us.split_at(EMPTY);
+            let empty = empty.iter().copied().fold(f64::INFINITY, f64::min);
+            let (us, _) = us.as_chunks::<2>();
+            for (us, drawn) in us.chunks_exact(2).zip(drawn.chunks_exact(2)) {
+                let part = |part: usize| {
+                    let of = |pass: usize| (drawn[pass][part], us[pass][part]);
+                    once(of(0), of(1), empty)
+                };
+                costs.push(GpuCost {
+                    volume_us: part(0),
+                    total_us: part(1),
+                });
             }
         }
-        encoder.resolve_query_set(&set, 0..queries, &resolved, 0);
-        encoder.copy_buffer_to_buffer(&resolved, 0, &readable, 0, readable.size());
-        self.gpu.queue.submit([encoder.finish()]);
-        let ticks: Vec<u64> = read_items(&self.gpu, &readable)?;
-        let took = |t: &[u64]| t[1].saturating_sub(t[0]) as f64 * tick_us;
-        Ok(ticks.chunks_exact(2).map(took).collect())
+        Ok(Some(costs))
+    }
+}
+
+/// What drawing once takes, from how long two passes took, or an empty one, in each of which it was
+/// drawn so many times.
+fn once(few: (u32, f64), many: (u32, f64), empty: f64) -> f64 {
+    let us = match (few, many) {
+        ((0, _), _) => 0.0,
+        ((few, few_us), (many, many_us)) if many > few => {
+            (many_us - few_us) / f64::from(many - few)
+        }
+        ((few, few_us), (_, many_us)) => (few_us.min(many_us) - empty) / f64::from(few),
+    };
+    us.max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::once;
+
+    #[test]
+    fn a_pass_as_such_costs_nothing() {
+        // A pass takes 7, a light 3.
+        assert_eq!(once((1, 10.0), (5, 22.0), 6.0), 3.0);
+        // What can be drawn once only has the empty pass to be compared with.
+        assert_eq!(once((1, 10.0), (1, 11.0), 7.0), 3.0);
+        assert_eq!(once((1, 5.0), (1, 6.0), 7.0), 0.0);
+        // No volume.
+        assert_eq!(once((0, 1.0), (0, 1.0), 0.0), 0.0);
     }
 }

@@ -6,9 +6,10 @@ use std::ops::Range;
 use umbrage_wgpu::ShadowRenderer;
 
 use super::{Given, Technique};
+use crate::gbuffer::Targets;
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
-use crate::run::{FROM_DARK, light_pass};
+use crate::run::{FROM_DARK, light_pass, stencil_pass};
 
 /// All of the plan's volumes, if it has any, and lights in one pass.
 #[derive(Debug)]
@@ -42,4 +43,45 @@ impl Technique for OnePass {
         self.0.record(&mut pass, given, lights, None);
         Ok(())
     }
+
+    fn record_again(
+        &mut self,
+        given: &Given<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        lights: Range<usize>,
+        target: &wgpu::Texture,
+        times: u32,
+    ) -> Result<u32, GpuError> {
+        let mut pass = clean_pass(encoder, given.targets, target);
+        for _ in 0..times {
+            self.0.record(&mut pass, given, lights.clone(), None);
+        }
+        Ok(times)
+    }
+
+    fn record_volumes_again(
+        &mut self,
+        given: &Given<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        lights: Range<usize>,
+        target: &wgpu::Texture,
+        times: u32,
+    ) -> u32 {
+        let mut pass = clean_pass(encoder, given.targets, target);
+        for _ in 0..times {
+            for light in lights.clone() {
+                given.shadows.record_volume(&mut pass, given.plan, light);
+            }
+        }
+        times
+    }
+}
+
+/// A pass that takes a stencil in which volumes were left.
+fn clean_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    targets: &Targets,
+    target: &wgpu::Texture,
+) -> wgpu::RenderPass<'e> {
+    stencil_pass(encoder, targets, target, FROM_DARK, wgpu::LoadOp::Clear(0))
 }

@@ -25,7 +25,7 @@ pub struct ProfileReport {
     pub size: [u32; 2],
     /// Of the scene.
     pub triangles: u64,
-    /// Rounds that each light was measured in; figures are the least of them.
+    /// Rounds that each light was measured in; figures are medians of them.
     pub rounds: u32,
     /// How it was measured, in words.
     pub how: Vec<String>,
@@ -43,7 +43,7 @@ pub struct ProfileReport {
 /// What the ordinary frame takes, and where it goes.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Frame {
-    /// From its begin to the end of the GPU's work, in milliseconds: the least of the rounds.
+    /// From its begin to the end of the GPU's work, in milliseconds: the median of the rounds.
     pub frame_ms: f64,
     /// The frame's parts in microseconds: the lights' own GPU times, what is shared, and the
     /// remainder, so that the sum is the frame.
@@ -153,6 +153,8 @@ pub struct LightRow {
     pub gpu_us: Option<GpuCost>,
     /// Fragments of its volume before the surface.
     pub volume_fragments: u64,
+    /// All fragments of its volume, those behind the surface too.
+    pub volume_covered: u64,
     /// Samples that its light draw covers.
     pub light_fragments: u64,
     /// Of these, samples shaded.

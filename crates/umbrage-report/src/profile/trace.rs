@@ -64,6 +64,7 @@ fn push(
             "subset_triangles": light.subset_triangles,
             "quads_drawn": light.quads_drawn,
             "volume_fragments": light.volume_fragments,
+            "volume_covered": light.volume_covered,
             "shaded_samples": light.shaded_samples,
             "path": light.path,
         });

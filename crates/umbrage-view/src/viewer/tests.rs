@@ -12,6 +12,10 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// A viewer of a small city, and where it draws.
 fn viewer() -> (Viewer, wgpu::Texture) {
     let scene = umbrage_scene::open("gen:city?triangles=1500&lights=6&seed=2", &()).unwrap();
+    of(scene)
+}
+
+fn of(scene: umbrage_scene::Scene) -> (Viewer, wgpu::Texture) {
     let stage = Stage::new(scene, Casters::Material, None).unwrap();
     let camera = stage.scene.cameras[0].clone();
     let [eye, ahead] = [camera.position, camera.position + camera.forward].map(|p| stage.local(p));
@@ -163,9 +167,7 @@ fn a_check_finds_nothing_wrong_with_the_counter_and_much_without_shadows() {
         while viewer.check.progress().is_some() {
             frame(&mut viewer, &target, &[]);
         }
-        let found = viewer
-            .check
-            .found(&viewer.camera.view, &viewer.mix.silent());
+        let found = viewer.check.found(&viewer.of().moment);
         let found = found.expect("it was judged");
         assert!(found.samples > 1000);
         assert_eq!(
@@ -175,4 +177,67 @@ fn a_check_finds_nothing_wrong_with_the_counter_and_much_without_shadows() {
             found.wrong
         );
     }
+}
+
+/// A man who walks before a wall, a lamp in his hand, and a lamp that hangs.
+fn walker() -> umbrage_scene::Scene {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/actors/cesium_man.glb"
+    );
+    let mut scene = umbrage_scene::open(file, &()).unwrap();
+    let rig = scene.rig.as_ref().expect("he has bones");
+    let hand = rig.moving().iter().rposition(|&moves| moves).unwrap();
+    let lamp = umbrage_scene::Light {
+        name: "carried".into(),
+        intensity: 30.0,
+        range: Some(20.0),
+        node: Some(hand as u32),
+        ..umbrage_scene::Light::default()
+    };
+    scene.lights.push(umbrage_scene::Light {
+        name: "hangs".into(),
+        position: glam::DVec3::new(1.0, 2.5, 2.0),
+        node: None,
+        ..lamp.clone()
+    });
+    scene.lights.push(lamp);
+    let eye = glam::DVec3::new(2.0, 1.5, 3.0);
+    let camera = umbrage_scene::Camera::look_at("door", eye, glam::DVec3::Y * 0.8, 1.0);
+    scene.cameras = vec![camera];
+    scene
+}
+
+#[test]
+fn time_goes_on_and_lights_that_are_carried_with_it() {
+    let (mut viewer, target) = of(walker());
+    let first = frame(&mut viewer, &target, &[]);
+    let before = viewer.lights.clone();
+    frame(&mut viewer, &target, &[Key::T]);
+    assert!(viewer.plays && viewer.stage.time_s > 0.0);
+    viewer.set_time(0.4);
+    frame(&mut viewer, &target, &[Key::T]);
+    assert!(!viewer.plays);
+    viewer.expose();
+    let later = frame(&mut viewer, &target, &[]);
+    assert!(differing(&later, &first) > 100);
+    assert_eq!(differing(&later, &rendered(&viewer)), 0);
+    let moved = |i: usize| viewer.lights[i].light.position != before[i].light.position;
+    assert_eq!([moved(0), moved(1)], [false, true]);
+    // The oracle sees him where he is, at two times one after the other.
+    for time_s in [0.4, 0.9] {
+        viewer.set_time(time_s);
+        frame(&mut viewer, &target, &[Key::O]);
+        while viewer.check.progress().is_some() {
+            frame(&mut viewer, &target, &[]);
+        }
+        let found = viewer
+            .check
+            .found(&viewer.of().moment)
+            .expect("it was judged");
+        assert!(found.samples > 1000, "{}", found.samples);
+        assert_eq!(found.wrong, 0, "at {time_s} s");
+    }
+    viewer.set_time(0.5);
+    assert!(viewer.check.found(&viewer.of().moment).is_none());
 }

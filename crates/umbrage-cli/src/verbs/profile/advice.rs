@@ -41,8 +41,10 @@ impl Candidate {
             AdviceKind::SingleSided | AdviceKind::SwitchOff | AdviceKind::NoShadows => {
                 pixels / 20_000
             }
-            AdviceKind::Move => pixels / 1_000,
-            AdviceKind::ShorterRange | AdviceKind::Merge | AdviceKind::NoCasting => pixels / 200,
+            AdviceKind::ShorterRange
+            | AdviceKind::Merge
+            | AdviceKind::Move
+            | AdviceKind::NoCasting => pixels / 200,
         }
     }
 
@@ -77,7 +79,7 @@ pub(super) fn candidates(base: &Base, setting: &Setting) -> Vec<Candidate> {
 fn cost(base: &Base, light: usize) -> f64 {
     let figures = &base.lights[light];
     match figures.gpu {
-        Some(gpu) => gpu.total_us(),
+        Some(gpu) => gpu.total_us,
         None => figures.build.total_us(),
     }
 }

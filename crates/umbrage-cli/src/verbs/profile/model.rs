@@ -1,7 +1,7 @@
 //! What work costs here: times of lights, explained by what they draw and build.
 //!
 //! Each stage is taken as a sum of what it has to do, each part at a price of its own and none below
-//! zero, fitted to all lights by least squares of relative errors. A change is predicted from the
+//! zero, fitted to all lights by least squares of errors in parts of the price. A change is predicted from the
 //! light's own time, by the ratio of the model after and before: so what the model leaves out of a
 //! light, it leaves out on both sides.
 
@@ -23,13 +23,14 @@ pub(super) struct Model {
     upload: Vec<f64>,
 }
 
-/// What a volume draw consists of.
+/// What a volume draw consists of. Which of its fragments count was not found to matter, on a software
+/// rasteriser: all are tested.
 fn volume(w: &Work) -> Vec<f64> {
     let polygons = f64::from(w.quads_drawn + w.cap_triangles);
     if polygons == 0.0 {
         return vec![0.0; 3];
     }
-    vec![1.0, polygons, w.counts.volume_fragments as f64]
+    vec![1.0, polygons, w.counts.volume_covered as f64]
 }
 
 /// What a light draw consists of; where there is a volume, the stencil is cleaned after it.
@@ -75,7 +76,7 @@ impl Model {
         };
         Self {
             volume: on_gpu(volume, |cost| cost.volume_us),
-            light: on_gpu(light, |cost| cost.light_us),
+            light: on_gpu(light, GpuCost::light_us),
             query: on_cpu(|w| each(w.subset), |f| f.build.query_us),
             facing: on_cpu(|w| each(w.subset), |f| f.build.facing_us),
             hidden: on_cpu(|w| pairs(w.casters), |f| f.build.hidden_us),
@@ -92,7 +93,10 @@ impl Model {
         let scaled = |us: f64, price: &[f64], parts: fn(&Work) -> Vec<f64>| {
             scaled(us, price, &parts(was), &parts(after))
         };
-        Some(scaled(gpu.volume_us, &self.volume, volume) + scaled(gpu.light_us, &self.light, light))
+        Some(
+            scaled(gpu.volume_us, &self.volume, volume)
+                + scaled(gpu.light_us(), &self.light, light),
+        )
     }
 
     /// CPU microseconds of building it.
@@ -118,24 +122,38 @@ impl Model {
 
 /// `us`, by the ratio of the prices of `after` and `before`.
 fn scaled(us: f64, price: &[f64], before: &[f64], after: &[f64]) -> f64 {
-    let cost = |parts: &[f64]| -> f64 { parts.iter().zip(price).map(|(n, p)| n * p).sum() };
-    match cost(before) {
-        0.0 => cost(after),
-        before => us * cost(after) / before,
+    match cost_of(before, price) {
+        0.0 => cost_of(after, price),
+        before => us * cost_of(after, price) / before,
     }
 }
 
-/// Prices not below zero with the least sum of squared relative errors, by coordinate descent.
+/// Prices not below zero with the least sum of squared errors in parts of what they make of a sample:
+/// errors of what was measured would favour prices that are too low.
 fn fit(samples: &[(Vec<f64>, f64)]) -> Vec<f64> {
-    let Some((first, _)) = samples.first() else {
+    let mean = samples.iter().map(|(_, us)| us).sum::<f64>() / samples.len().max(1) as f64;
+    let Some(mut price) = first_guess(samples, mean) else {
         return Vec::new();
     };
-    let size = first.len();
-    let mean = samples.iter().map(|(_, us)| us).sum::<f64>() / samples.len() as f64;
-    let (mut gram, mut right) = (vec![0.0; size * size], vec![0.0; size]);
-    for (parts, us) in samples {
+    let mut costs: Vec<f64> = samples.iter().map(|(_, us)| *us).collect();
+    for _ in 0..20 {
         // Small times are mostly noise: they count no more than if they were a tenth of the mean.
-        let weight = (us.max(0.1 * mean).max(1e-9)).powi(-2);
+        let weights = costs
+            .iter()
+            .map(|cost| cost.max(0.1 * mean).max(1e-9).powi(-2));
+        solve(samples, &weights.collect::<Vec<_>>(), &mut price);
+        for (cost, (parts, _)) in costs.iter_mut().zip(samples) {
+            *cost = cost_of(parts, &price);
+        }
+    }
+    price
+}
+
+/// Weighted least squares by coordinate descent, from `price` on.
+fn solve(samples: &[(Vec<f64>, f64)], weights: &[f64], price: &mut [f64]) {
+    let size = price.len();
+    let (mut gram, mut right) = (vec![0.0; size * size], vec![0.0; size]);
+    for ((parts, us), weight) in samples.iter().zip(weights) {
         for (i, a) in parts.iter().enumerate() {
             right[i] += weight * a * us;
             for (j, b) in parts.iter().enumerate() {
@@ -143,8 +161,7 @@ fn fit(samples: &[(Vec<f64>, f64)]) -> Vec<f64> {
             }
         }
     }
-    let mut price = first_guess(samples, mean);
-    for _ in 0..2000 {
+    for _ in 0..1000 {
         for i in 0..size {
             let diagonal = gram[i * size + i];
             if diagonal > 0.0 {
@@ -156,13 +173,17 @@ fn fit(samples: &[(Vec<f64>, f64)]) -> Vec<f64> {
             }
         }
     }
-    price
+}
+
+fn cost_of(parts: &[f64], price: &[f64]) -> f64 {
+    parts.iter().zip(price).map(|(n, p)| n * p).sum()
 }
 
 /// Where to start, and where it stays as far as the samples leave it open, as one light does: time is
-/// in proportion to the work, to each kind alike; the constant, which comes first, has no share.
-fn first_guess(samples: &[(Vec<f64>, f64)], mean: f64) -> Vec<f64> {
-    let size = samples[0].0.len();
+/// in proportion to the work, to each kind alike; the constant, which comes first, has no share. None
+/// without samples.
+fn first_guess(samples: &[(Vec<f64>, f64)], mean: f64) -> Option<Vec<f64>> {
+    let size = samples.first()?.0.len();
     let kinds = (size - 1).max(1) as f64;
     let of = |kind: usize| {
         let all: f64 = samples.iter().map(|(parts, _)| parts[kind]).sum();
@@ -172,7 +193,7 @@ fn first_guess(samples: &[(Vec<f64>, f64)], mean: f64) -> Vec<f64> {
             _ => 0.0,
         }
     };
-    (0..size).map(of).collect()
+    Some((0..size).map(of).collect())
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec2};
 use umbrage_lab::heat::false_colours;
+use umbrage_lab::lab::Lab;
 use umbrage_lab::picture::{rgb_png, rgba_png};
 use umbrage_report::bench::Picture;
 use umbrage_report::profile::{Pictures, Plan, ProfileReport, Thumbnail};
@@ -20,15 +21,22 @@ const PLAN: f64 = 640.0;
 
 /// All of them.
 pub(super) fn pictures(
-    base: &Base,
+    lab: &Lab,
+    base: &mut Base,
     setting: &Setting,
     report: &ProfileReport,
 ) -> Result<Pictures, CliError> {
     let size = setting.view.size;
     let mut lights = Vec::new();
     let costly = costliest(&report.lights).into_iter();
-    for light in costly.filter(|light| base.drawn.contains(light)).take(MOST) {
-        let lit = base.meter.picture(light)?.exposed_rgb8(base.exposure);
+    let drawn: Vec<usize> = costly
+        .filter(|l| base.drawn.contains(l))
+        .take(MOST)
+        .collect();
+    for light in drawn {
+        let (stage, view) = (&setting.stage, &setting.view);
+        let lit = lab.alone(&mut base.rendering, stage, &setting.lights, view, light)?;
+        let lit = lit.exposed_rgb8(base.exposure);
         let overdraw = false_colours(&base.counter.overdraw(light)?);
         lights.push(Thumbnail {
             light,

@@ -10,20 +10,22 @@ use crate::setting::Setting;
 /// How it was measured.
 pub(super) fn how(base: &Base) -> Vec<String> {
     let mut how = vec![
-        "The ordinary frame was timed first, with nothing in it that the profile needs.".to_owned(),
+        "Ordinary frames were timed with nothing in them that the profile needs, in turn with all \
+         else."
+            .to_owned(),
         "CPU figures: each light built from nothing on one thread, with a clock between the stages. \
          A light whose volume is kept pays none of it in a frame."
             .to_owned(),
     ];
     how.push(match base.has_gpu_times {
-        true => "GPU figures: each light drawn in two passes of its own, for its volume and for its \
-                 light, with timestamps at their bounds, less the time of an empty pass. One by one \
-                 lights cannot overlap, as they do in the frame: the remainder says how much."
+        true => "GPU figures: each light drawn in a pass of its own, several times over, and its \
+                 volume in another, timed from outside, less the time of an empty pass. One by one \
+                 lights do not overlap as they do in the frame: the difference says how much."
             .to_owned(),
         false => "This adapter has no timestamps, so there are no GPU figures.".to_owned(),
     });
     how.push(
-        "Every figure is the least of the rounds: what disturbs a measurement only adds to it. \
+        "Every figure is the median of the rounds, each of which has them all. \
          Fragments and pixels are counted exactly. A light shows on a pixel that it makes brighter \
          by a step of 8-bit sRGB or more."
             .to_owned(),
@@ -37,7 +39,7 @@ fn own_us(figures: &Figures) -> Option<f64> {
         true => 0.0,
         false => figures.build.total_us() + figures.upload_us,
     };
-    Some(figures.gpu?.total_us() + build)
+    Some(figures.gpu?.total_us + build)
 }
 
 /// The frame and its parts.
@@ -48,7 +50,7 @@ pub(super) fn frame(base: &Base) -> Frame {
     let mut parts = Vec::new();
     if base.has_gpu_times {
         let gpu = base.lights.iter().filter_map(|figures| figures.gpu);
-        let lights: f64 = gpu.map(|gpu| gpu.total_us()).sum();
+        let lights: f64 = gpu.map(|gpu| gpu.total_us).sum();
         parts.push(("lights, one by one", lights));
         parts.push((
             "lights in one pass, difference",
@@ -107,6 +109,7 @@ pub(super) fn lights(base: &Base, setting: &Setting) -> Vec<LightRow> {
             cpu_us: cpu(&figures.build, figures.upload_us),
             gpu_us: figures.gpu.map(gpu),
             volume_fragments: counts.volume_fragments,
+            volume_covered: counts.volume_covered,
             light_fragments: counts.light_fragments,
             shaded_samples: counts.shaded_samples,
             lit_pixels: counts.lit_pixels,
@@ -134,7 +137,7 @@ fn cpu(build: &BuildTimes, upload_us: f64) -> CpuCost {
 fn gpu(gpu: Gpu) -> GpuCost {
     GpuCost {
         volume: gpu.volume_us,
-        light: gpu.light_us,
+        light: gpu.light_us(),
     }
 }
 

@@ -1,21 +1,21 @@
 //! Advice tried out: applied in memory, what it changes counted, time predicted, and measured if asked.
 //!
 //! Takes a candidate; gives advice, or nothing if it would save too little or change too much of the
-//! picture. With and without the change are measured in turn, in the same way as the profile.
+//! picture.
+
+use std::time::Instant;
 
 use umbrage_core::Casting;
-use umbrage_core::volume::BuildTimes;
 use umbrage_lab::lab::Lab;
-use umbrage_lab::picture::Lit;
-use umbrage_lab::profile::GpuCost;
-use umbrage_lab::stage::StageLight;
+use umbrage_lab::rendering::Rendering;
+use umbrage_lab::stage::{Cast, StageLight};
 use umbrage_report::profile::{Advice, Saving};
 
 use super::advice::Candidate;
 use super::change::{Change, changed};
-use super::lights;
-use super::measure::{Base, work};
+use super::measure::{Base, Work, work};
 use super::model::Model;
+use super::verify::{Saved, Side, exchange, turns};
 use crate::error::CliError;
 use crate::setting::Setting;
 
@@ -58,110 +58,58 @@ impl Trials {
         candidate: &Candidate,
         setting: &mut Setting,
     ) -> Result<Option<Advice>, CliError> {
-        let built_us = match self.verify {
-            true => {
-                let (stage, rounds) = (&setting.stage, self.base.rounds);
-                total(&self.lab.build_times(stage, &candidate.lights, rounds))
-            }
-            false => 0.0,
-        };
-        match &candidate.change {
-            Change::Lights(changes) => {
-                let (lights, unshadowed) = changed(&setting.lights, changes);
-                self.compare(candidate, setting, lights, unshadowed, built_us)
-            }
-            Change::Casting(group, rule) => {
-                let was = &setting.stage.mesh.casting;
-                let members = group.members(&setting.stage).zip(was);
-                let casting = members.map(|(is_in, was)| match (is_in, was) {
-                    (false, _) | (_, Casting::None) => *was,
-                    _ => *rule,
-                });
-                let was = setting.stage.recast(casting.collect())?;
-                let advice = {
-                    let lights = setting.lights.clone();
-                    self.compare(candidate, setting, lights, Vec::new(), built_us)
-                };
-                setting.stage.recast(was)?;
-                advice
-            }
-        }
-    }
-
-    /// `lights` on the stage as it is now against the base, in which the candidate's took
-    /// `built_us` to build just now.
-    fn compare(
-        &mut self,
-        candidate: &Candidate,
-        setting: &Setting,
-        lights: Vec<StageLight>,
-        unshadowed: Vec<usize>,
-        built_us: f64,
-    ) -> Result<Option<Advice>, CliError> {
-        let Setting { stage, view, .. } = setting;
-        let (base, other) = (&self.base, &mut self.other);
-        other.unshadowed.clone_from(&unshadowed);
-        let lit = other.render_while(stage, &lights, view, base.method, |_| false)?;
-        let pixels_changed = self.pixels_changed(&lit);
-        let other = &mut self.other;
-        let counter = other.counter(stage, &lights, view, base.exposure)?;
-        let mut after = work(other, setting, &lights, &counter)?;
-        drop(counter);
-        for &light in &unshadowed {
-            // What is left out need not be built.
-            let Some(work) = after.get_mut(light) else {
-                continue;
-            };
-            (work.subset, work.casters, work.facing, work.quads) = (0, 0, 0, 0);
-        }
-        let of = &candidate.lights;
-        let mut predicted = Saving {
-            frame_us: base.has_gpu_times.then_some(0.0),
-            build_us: 0.0,
-        };
-        for &light in of {
-            let (before, after) = (&base.lights[light], &after[light]);
-            if let (Some(sum), Some(gpu)) = (&mut predicted.frame_us, before.gpu) {
-                let left = self.model.gpu_us(before, after).unwrap_or(0.0);
-                *sum += gpu.total_us() - left;
-            }
-            let built = before.build.total_us() + before.upload_us;
-            predicted.build_us += built - self.model.build_us(before, after);
-        }
-        let (mut drawn_us, mut built_in_us) = (0.0, 0.0);
-        for figures in of.iter().map(|&light| &base.lights[light]) {
-            drawn_us += figures.gpu.map_or(0.0, |gpu| gpu.total_us());
-            built_in_us += figures.build.total_us();
-        }
-        let shorter = predicted.build_us > LEAST_BUILD * base.build_all_us
-            && predicted.build_us > LEAST_SHARE * built_in_us;
-        let faster = (predicted.frame_us)
-            .is_some_and(|us| us > LEAST * base.frame.frame * 1e3 && us > LEAST_SHARE * drawn_us);
-        let quads = |all: &mut dyn Iterator<Item = u32>| all.map(f64::from).sum::<f64>();
-        let before = quads(&mut of.iter().map(|&light| base.lights[light].work.quads));
-        let fewer = before - quads(&mut of.iter().map(|&light| after[light].quads));
-        let too_few = candidate.least_quads > 0.0 && fewer < candidate.least_quads * before;
-        if !(shorter || faster) || too_few {
+        let mut applied = Applied::new(&candidate.change, setting)?;
+        exchange(&mut setting.stage, &mut applied.cast);
+        let tried = self.draw(candidate, setting, &applied)?;
+        exchange(&mut setting.stage, &mut applied.cast);
+        let Some(mut tried) = tried else {
             return Ok(None);
-        }
-        let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
-        if pixels_changed > candidate.may_change(pixels) {
-            return Ok(None);
-        }
+        };
+        let predicted = tried.predicted;
         let measured = match self.verify {
-            true => Some(self.measure(of, setting, (&lights, &unshadowed), built_us)?),
+            true => {
+                let Setting {
+                    stage,
+                    lights,
+                    view,
+                } = setting;
+                let turns = turns(&candidate.lights, |light| {
+                    let gpu = self.base.lights[light].gpu.unwrap_or_default();
+                    gpu.total_us * f64::from(self.base.times[light])
+                });
+                let Base {
+                    rendering,
+                    times,
+                    rounds,
+                    ..
+                } = &mut self.base;
+                let with = Side::new(&mut self.other, &applied.lights, &mut tried.rendering);
+                let mut sides = [Side::new(&mut self.lab, lights, rendering), with];
+                let saved = Saved::measure(
+                    &mut sides,
+                    &turns,
+                    times,
+                    (stage, &mut applied.cast),
+                    view,
+                    *rounds,
+                )?;
+                let (drawn_us, built_us) = self.base.cost_of(&candidate.lights);
+                Some(Saving {
+                    frame_us: self.base.has_gpu_times.then_some(drawn_us * saved.drawn),
+                    build_us: built_us * saved.built,
+                })
+            }
             false => None,
         };
-        let text = candidate.text(&self.base, &after, pixels_changed, pixels);
+        let size = setting.view.size.map(u64::from);
+        let (pixels_changed, pixels) = (tried.pixels_changed, size[0] * size[1]);
+        let name = |&light: &usize| setting.lights[light].name.clone();
         let ratio = |measured: f64, predicted: f64| (predicted > 0.0).then(|| measured / predicted);
         Ok(Some(Advice {
             kind: candidate.kind,
-            lights: of
-                .iter()
-                .map(|&light| setting.lights[light].name.clone())
-                .collect(),
+            lights: candidate.lights.iter().map(name).collect(),
             of: candidate.of.clone(),
-            text,
+            text: candidate.text(&self.base, &tried.after, pixels_changed, pixels),
             predicted,
             measured,
             frame_ratio: measured.and_then(|m| ratio(m.frame_us?, predicted.frame_us?)),
@@ -170,51 +118,117 @@ impl Trials {
         }))
     }
 
-    /// Pixels that differ from the picture as it is by more than two steps.
-    fn pixels_changed(&self, lit: &Lit) -> u64 {
-        let now = lit.exposed_rgb8(self.base.exposure);
-        let pixels = self.picture.chunks_exact(3).zip(now.chunks_exact(3));
-        let differs = |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2);
-        pixels.filter(differs).count() as u64
-    }
-
-    /// What the lights take as they are and as they would be, round by round in turn.
-    fn measure(
+    /// Draws the frame with the change, which the setting has, and predicts what it saves; nothing
+    /// if that is too little, or the picture too different.
+    fn draw(
         &mut self,
-        of: &[usize],
+        candidate: &Candidate,
         setting: &Setting,
-        (changed, unshadowed): (&[StageLight], &[usize]),
-        built_us: f64,
-    ) -> Result<Saving, CliError> {
+        applied: &Applied,
+    ) -> Result<Option<Tried>, CliError> {
         let Setting { stage, view, .. } = setting;
-        let mut meter = self.other.meter(stage, changed, view)?;
-        let drawn = lights::drawn(&self.other);
-        let still: Vec<usize> = of.iter().copied().filter(|l| drawn.contains(l)).collect();
-        let mut before = vec![GpuCost::default(); of.len()];
-        let mut after = vec![GpuCost::default(); still.len()];
-        for _ in 0..self.base.gpu_rounds {
-            self.base.meter.round(of, &mut before)?;
-            meter.round(&still, &mut after)?;
+        let Applied {
+            lights, unshadowed, ..
+        } = applied;
+        let (base, other) = (&self.base, &mut self.other);
+        other.unshadowed.clone_from(unshadowed);
+        let mut rendering = other.begin(stage, view, base.method)?;
+        other.draw(&mut rendering, stage, lights, view, Instant::now())?;
+        other.read_calls(&rendering)?;
+        let picture = other.lit(&rendering)?.exposed_rgb8(base.exposure);
+        let pixels_changed = pixels_changed(&self.picture, &picture);
+        let counter = other.counter(stage, lights, view, base.exposure)?;
+        let mut after = work(other, setting, lights, &counter)?;
+        drop(counter);
+        for &light in unshadowed {
+            // What is left out need not be built.
+            let Some(work) = after.get_mut(light) else {
+                continue;
+            };
+            (work.subset, work.casters, work.facing, work.quads) = (0, 0, 0, 0);
         }
-        let built = lights::built(&self.other);
-        let is_built = |light: &usize| built.contains(light) && !unshadowed.contains(light);
-        let still: Vec<usize> = of.iter().copied().filter(is_built).collect();
-        let rounds = self.base.rounds;
-        let uploaded = |times: Vec<f64>| times.iter().sum::<f64>();
-        let built_after = total(&self.other.build_times(stage, &still, rounds));
-        let uploads = uploaded(self.lab.upload_times(of, rounds)?)
-            - uploaded(self.other.upload_times(&still, rounds)?);
-        let drawn = |costs: &[GpuCost]| costs.iter().map(GpuCost::total_us).sum::<f64>();
-        Ok(Saving {
-            frame_us: self
-                .base
-                .has_gpu_times
-                .then(|| drawn(&before) - drawn(&after)),
-            build_us: built_us - built_after + uploads,
+        let of = &candidate.lights;
+        let (drawn_us, built_us) = base.cost_of(of);
+        let (mut drawn_after, mut built_after) = (0.0, 0.0);
+        for &light in of {
+            let (before, after) = (&base.lights[light], &after[light]);
+            drawn_after += self.model.gpu_us(before, after).unwrap_or(0.0);
+            built_after += self.model.build_us(before, after);
+        }
+        let predicted = Saving {
+            frame_us: base.has_gpu_times.then_some(drawn_us - drawn_after),
+            build_us: built_us - built_after,
+        };
+        let shorter = predicted.build_us > LEAST_BUILD * base.build_all_us
+            && predicted.build_us > LEAST_SHARE * built_us;
+        let faster = (predicted.frame_us)
+            .is_some_and(|us| us > LEAST * base.frame.frame * 1e3 && us > LEAST_SHARE * drawn_us);
+        let quads = |all: &mut dyn Iterator<Item = u32>| all.map(f64::from).sum::<f64>();
+        let before = quads(&mut of.iter().map(|&light| base.lights[light].work.quads));
+        let fewer = before - quads(&mut of.iter().map(|&light| after[light].quads));
+        let too_few = candidate.least_quads > 0.0 && fewer < candidate.least_quads * before;
+        let pixels = u64::from(view.size[0]) * u64::from(view.size[1]);
+        let too_different = pixels_changed > candidate.may_change(pixels);
+        if !(shorter || faster) || too_few || too_different {
+            return Ok(None);
+        }
+        Ok(Some(Tried {
+            rendering,
+            after,
+            predicted,
+            pixels_changed,
+        }))
+    }
+}
+
+/// A change as it is made.
+struct Applied {
+    lights: Vec<StageLight>,
+    unshadowed: Vec<usize>,
+    /// How the stage casts after it, or before it while the stage has the change.
+    cast: Option<Cast>,
+}
+
+impl Applied {
+    fn new(change: &Change, setting: &Setting) -> Result<Self, CliError> {
+        let Setting { stage, lights, .. } = setting;
+        Ok(match change {
+            Change::Lights(changes) => {
+                let (lights, unshadowed) = changed(lights, changes);
+                Self {
+                    lights,
+                    unshadowed,
+                    cast: None,
+                }
+            }
+            Change::Casting(group, rule) => {
+                let members = group.members(stage).zip(&stage.mesh.casting);
+                let casting = members.map(|(is_in, was)| match (is_in, was) {
+                    (false, _) | (_, Casting::None) => *was,
+                    _ => *rule,
+                });
+                Self {
+                    lights: lights.clone(),
+                    unshadowed: Vec::new(),
+                    cast: Some(stage.recast(casting.collect())?),
+                }
+            }
         })
     }
 }
 
-fn total(times: &[BuildTimes]) -> f64 {
-    times.iter().map(BuildTimes::total_us).sum()
+/// A change that was drawn and is worth it.
+struct Tried {
+    rendering: Rendering,
+    /// What each light has to do.
+    after: Vec<Work>,
+    predicted: Saving,
+    pixels_changed: u64,
+}
+
+/// Pixels that differ from the picture as it is by more than two steps.
+fn pixels_changed(before: &[u8], after: &[u8]) -> u64 {
+    let pixels = before.chunks_exact(3).zip(after.chunks_exact(3));
+    let differs = |(a, b): &(&[u8], &[u8])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2);
+    pixels.filter(differs).count() as u64
 }

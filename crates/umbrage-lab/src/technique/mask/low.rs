@@ -8,7 +8,7 @@
 use umbrage_core::View;
 use umbrage_core::frame::bounds::light_rect;
 use umbrage_core::frame::{FramePlan, Rect};
-use umbrage_wgpu::{Frame, RendererOptions, ShadowRenderer, Uploaded, WorldWindows};
+use umbrage_wgpu::{RendererOptions, ShadowRenderer, Uploaded, WorldWindows};
 
 use super::low_depth::LowDepth;
 use crate::gbuffer::{DEPTH_STENCIL, depth_only, texture};
@@ -75,11 +75,8 @@ impl LowFrame {
         }
         self.shadows
             .upload_world(device, queue, &given.stage.world)?;
-        let frame = Frame {
-            view: &view,
-            plan: &self.plan,
-            ..given.frame
-        };
+        let mut frame = given.frame;
+        (frame.view, frame.plan) = (&view, &self.plan);
         self.uploaded = self.shadows.prepare(device, queue, &frame)?;
         self.is_pending = true;
         self.quad_bytes = 2 * size_of_val(&given.frame.volumes.quads[..]) as u64;

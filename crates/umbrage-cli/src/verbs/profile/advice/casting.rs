@@ -26,20 +26,20 @@ pub(super) fn candidates(base: &Base, setting: &Setting) -> Vec<Candidate> {
         .map(|&light| volume_cost(base, light))
         .sum();
     let mut groups: Vec<(Group, f64)> = casters.cost.iter().map(|(g, c)| (*g, *c)).collect();
-    // By cost, and where a mesh has one material of its own, the mesh.
     groups.sort_by(|a, b| b.1.total_cmp(&a.1).then(order(a.0).cmp(&order(b.0))));
     groups.retain(|(_, cost)| *cost > WORTH * all_cost);
-    groups.dedup_by(|a, b| a.1 == b.1);
     let is_double = |group: Group| match group {
         Group::Material(m) => setting.stage.scene.materials[m as usize].double_sided,
         Group::Mesh(_) => false,
     };
     let with = |group: Group| casters.lights.get(&group).cloned().unwrap_or_default();
-    for &(group, _) in groups.iter().take(MOST) {
-        all.push(no_casting(group, with(group), setting));
-    }
     for &(group, _) in groups.iter().filter(|g| is_double(g.0)).take(MOST) {
         all.push(single_sided(group, with(group), setting));
+    }
+    // Where a mesh has one material of its own, the mesh.
+    groups.dedup_by(|a, b| a.1 == b.1);
+    for &(group, _) in groups.iter().take(MOST) {
+        all.push(no_casting(group, with(group), setting));
     }
     all
 }
