@@ -141,17 +141,12 @@ impl LightPass {
         draw: LightDraw,
         lit_by: LitBy<'_>,
     ) -> Self {
-        let add = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        };
         let add = match lit_by {
             LitBy::Alpha => wgpu::BlendComponent {
                 src_factor: wgpu::BlendFactor::DstAlpha,
-                ..add
+                ..ADD
             },
-            _ => add,
+            _ => ADD,
         };
         let add = wgpu::BlendState {
             color: add,
@@ -300,6 +295,13 @@ impl LightPass {
         shadows.draw_light(pass, number);
     }
 }
+
+/// Adds to what is there.
+pub(crate) const ADD: wgpu::BlendComponent = wgpu::BlendComponent {
+    src_factor: wgpu::BlendFactor::One,
+    dst_factor: wgpu::BlendFactor::One,
+    operation: wgpu::BlendOperation::Add,
+};
 
 /// For who leaves the decision to the stencil, or to nobody.
 const ALL_VISIBLE: &str = "fn visibility(light: u32, pixel: vec2f) -> f32 { return 1.0; }";

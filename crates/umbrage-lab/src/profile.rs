@@ -4,7 +4,7 @@
 //! ([`Counter::count`]) and CPU time ([`Lab::build_times`]). On a GPU that draws tile by tile, software
 //! included, a timestamp inside a pass says little; so each light has passes of its own, timed from
 //! outside, in which it is drawn several times over, as lights are drawn in a frame one after the
-//! other; the cost of an empty pass is subtracted.
+//! other; what the further times take counts.
 
 mod building;
 mod counts;

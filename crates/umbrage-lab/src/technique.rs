@@ -60,6 +60,15 @@ pub struct TechniqueReport {
     pub note: String,
 }
 
+/// What of lights is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Their volumes.
+    Volumes,
+    /// Volumes, if there are any, and light.
+    Whole,
+}
+
 /// A way of finding shadows, and of lighting by them.
 pub(crate) trait Technique: Debug {
     /// Brings what it keeps from frame to frame up to date. Once a frame, before the first
@@ -78,31 +87,21 @@ pub(crate) trait Technique: Debug {
         target: &wgpu::Texture,
     ) -> Result<(), GpuError>;
 
-    /// Records the lights into `target` for their time alone, `times` over in one pass if it can;
-    /// says how often it did. The stencil may hold volumes before that; it is zero after it.
+    /// Records a part of the lights into `target` for its time alone, `times` over in one pass if it
+    /// can; says how often it did: no time if it does not draw volume by volume. The stencil may hold
+    /// volumes before that, and does so after volumes alone.
     fn record_again(
         &mut self,
         given: &Given<'_>,
         encoder: &mut wgpu::CommandEncoder,
         lights: Range<usize>,
         target: &wgpu::Texture,
-        _times: u32,
+        (part, _times): (Part, u32),
     ) -> Result<u32, GpuError> {
-        self.record(given, encoder, lights, target)?;
-        Ok(1)
-    }
-
-    /// The same of their volumes without their light, which leaves the stencil as it happens to be;
-    /// says that it did so no time if it does not draw volume by volume.
-    fn record_volumes_again(
-        &mut self,
-        _given: &Given<'_>,
-        _encoder: &mut wgpu::CommandEncoder,
-        _lights: Range<usize>,
-        _target: &wgpu::Texture,
-        _times: u32,
-    ) -> u32 {
-        0
+        match part {
+            Part::Volumes => Ok(0),
+            Part::Whole => self.record(given, encoder, lights, target).map(|()| 1),
+        }
     }
 
     /// The shadow renderer of its own that draws the quads, if it has one, and what `prepare`

@@ -15,7 +15,7 @@ use crate::binding::{self, bind, buffer, layout};
 use crate::gbuffer::{texture, whole};
 use crate::gpu::{Gpu, GpuError};
 use crate::lab::Lab;
-use crate::light_pass::{LightDraw, LightPass, LitBy};
+use crate::light_pass::{ADD, LightDraw, LightPass, LitBy};
 use crate::readback::{read_items, read_texture, record_copy};
 use crate::run::{FROM_DARK, Run, light_pass};
 use crate::stage::{Stage, StageLight};
@@ -145,16 +145,11 @@ impl Lab {
 
 /// Adds one to red for each fragment of a volume, wherever it is.
 fn covering(gpu: &Gpu, shadows: &ShadowRenderer) -> VolumeFaces {
-    let add = wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::One,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
-    };
     let red = wgpu::ColorTargetState {
         format: LightDraw::Count.format(),
         blend: Some(wgpu::BlendState {
-            color: add,
-            alpha: add,
+            color: ADD,
+            alpha: ADD,
         }),
         write_mask: wgpu::ColorWrites::RED,
     };

@@ -1,5 +1,7 @@
 //! GPU time of each light, drawn alone.
 
+use std::ops::Range;
+
 use umbrage_core::View;
 
 use crate::gbuffer::texture;
@@ -8,6 +10,7 @@ use crate::lab::Lab;
 use crate::light_pass::HDR;
 use crate::rendering::Rendering;
 use crate::stage::{Stage, StageLight};
+use crate::technique::Part;
 use crate::timer::Timer;
 
 /// GPU time of one light, in microseconds, without that of a pass as such.
@@ -52,53 +55,55 @@ impl Lab {
         let scratch = texture(gpu, "one light", view.size, HDR, none);
         let mut costs = Vec::with_capacity(numbers.len());
         for numbers in numbers.chunks(CHUNK) {
-            let Some(timer) = Timer::new(gpu, (EMPTY + 4 * numbers.len()) as u32) else {
+            // A query that is never written is waited for without end.
+            let spans = numbers
+                .iter()
+                .map(|(_, times)| if *times > 1 { 4 } else { 2 });
+            let Some(timer) = Timer::new(gpu, EMPTY as u32 + spans.sum::<u32>()) else {
                 return Ok(None);
             };
             let (technique, given) =
                 (rendering.run).technique(gpu, stage, lights, self.frame(view));
             let mut encoder = super::encoder(gpu);
-            let e = &mut encoder;
-            let mut marks = 0..;
-            let mut mark = |encoder: &mut wgpu::CommandEncoder| {
-                timer.mark(encoder, marks.next().unwrap_or_default());
+            let mut spans = 0..;
+            // How often it was drawn, and in which span.
+            let mut pass = |lights: Range<usize>, part, times| -> Result<(u32, usize), GpuError> {
+                let span: u32 = spans.next().unwrap_or_default();
+                timer.mark(&mut encoder, 2 * span);
+                let again = (part, times);
+                let drawn =
+                    technique.record_again(&given, &mut encoder, lights, &scratch, again)?;
+                timer.mark(&mut encoder, 2 * span + 1);
+                Ok((drawn, span as usize))
             };
             for _ in 0..EMPTY {
-                mark(e);
-                technique.record_again(&given, e, 0..0, &scratch, 1)?;
-                mark(e);
+                pass(0..0, Part::Whole, 1)?;
             }
-            let mut drawn = Vec::with_capacity(2 * numbers.len());
+            let mut drawn = Vec::with_capacity(numbers.len());
             for &(number, times) in numbers {
-                let light = number..number + 1;
-                for times in [1, times] {
-                    mark(e);
-                    let volume =
-                        technique.record_volumes_again(&given, e, light.clone(), &scratch, times);
-                    mark(e);
-                    mark(e);
-                    let whole =
-                        technique.record_again(&given, e, light.clone(), &scratch, times)?;
-                    mark(e);
-                    drawn.push([volume, whole]);
-                }
+                let mut both = |part| -> Result<_, GpuError> {
+                    let once = pass(number..number + 1, part, 1)?;
+                    let often = match times {
+                        0 | 1 => once,
+                        _ => pass(number..number + 1, part, times)?,
+                    };
+                    Ok([once, often])
+                };
+                // Volumes leave the stencil as it happens to be.
+                drawn.push([both(Part::Volumes)?, both(Part::Whole)?]);
             }
-            timer.resolve(e);
+            timer.resolve(&mut encoder);
             gpu.queue.submit([encoder.finish()]);
             let us: Vec<f64> = timer.read(gpu)?.iter().map(|ms| ms * 1e3).collect();
-            let (empty, us) = us.split_at(EMPTY);
-            let empty = empty.iter().copied().fold(f64::INFINITY, f64::min);
-            let (us, _) = us.as_chunks::<2>();
-            for (us, drawn) in us.chunks_exact(2).zip(drawn.chunks_exact(2)) {
-                let part = |part: usize| {
-                    let of = |pass: usize| (drawn[pass][part], us[pass][part]);
-                    once(of(0), of(1), empty)
-                };
-                costs.push(GpuCost {
-                    volume_us: part(0),
-                    total_us: part(1),
-                });
-            }
+            let empty = us[..EMPTY].iter().copied().fold(f64::INFINITY, f64::min);
+            let took = |passes: [(u32, usize); 2]| {
+                let [few, many] = passes.map(|(times, span)| (times, us[span]));
+                once(few, many, empty)
+            };
+            costs.extend(drawn.into_iter().map(|[volume, whole]| GpuCost {
+                volume_us: took(volume),
+                total_us: took(whole),
+            }));
         }
         Ok(Some(costs))
     }

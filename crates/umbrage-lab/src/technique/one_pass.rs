@@ -5,8 +5,7 @@ use std::ops::Range;
 
 use umbrage_wgpu::ShadowRenderer;
 
-use super::{Given, Technique};
-use crate::gbuffer::Targets;
+use super::{Given, Part, Technique};
 use crate::gpu::{Gpu, GpuError};
 use crate::light_pass::{LightDraw, LightPass, LitBy};
 use crate::run::{FROM_DARK, light_pass, stencil_pass};
@@ -50,38 +49,20 @@ impl Technique for OnePass {
         encoder: &mut wgpu::CommandEncoder,
         lights: Range<usize>,
         target: &wgpu::Texture,
-        times: u32,
+        (part, times): (Part, u32),
     ) -> Result<u32, GpuError> {
-        let mut pass = clean_pass(encoder, given.targets, target);
+        let clean = wgpu::LoadOp::Clear(0);
+        let mut pass = stencil_pass(encoder, given.targets, target, FROM_DARK, clean);
         for _ in 0..times {
-            self.0.record(&mut pass, given, lights.clone(), None);
+            match part {
+                Part::Whole => self.0.record(&mut pass, given, lights.clone(), None),
+                Part::Volumes => {
+                    for light in lights.clone() {
+                        given.shadows.record_volume(&mut pass, given.plan, light);
+                    }
+                }
+            }
         }
         Ok(times)
     }
-
-    fn record_volumes_again(
-        &mut self,
-        given: &Given<'_>,
-        encoder: &mut wgpu::CommandEncoder,
-        lights: Range<usize>,
-        target: &wgpu::Texture,
-        times: u32,
-    ) -> u32 {
-        let mut pass = clean_pass(encoder, given.targets, target);
-        for _ in 0..times {
-            for light in lights.clone() {
-                given.shadows.record_volume(&mut pass, given.plan, light);
-            }
-        }
-        times
-    }
-}
-
-/// A pass that takes a stencil in which volumes were left.
-fn clean_pass<'e>(
-    encoder: &'e mut wgpu::CommandEncoder,
-    targets: &Targets,
-    target: &wgpu::Texture,
-) -> wgpu::RenderPass<'e> {
-    stencil_pass(encoder, targets, target, FROM_DARK, wgpu::LoadOp::Clear(0))
 }

@@ -19,7 +19,7 @@ pub(super) fn how(base: &Base) -> Vec<String> {
     ];
     how.push(match base.has_gpu_times {
         true => "GPU figures: each light drawn in a pass of its own, several times over, and its \
-                 volume in another, timed from outside, less the time of an empty pass. One by one \
+                 volume in another, timed from outside: what the further times take counts. One by one \
                  lights do not overlap as they do in the frame: the difference says how much."
             .to_owned(),
         false => "This adapter has no timestamps, so there are no GPU figures.".to_owned(),
